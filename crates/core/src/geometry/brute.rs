@@ -1,0 +1,69 @@
+//! The oracle: every ray against every triangle (Möller & Trumbore 1997, in double precision). Slow and obviously right.
+
+use super::{Corners, Geometry, Hit, NONE, Ray};
+use crate::scene::Scene;
+use glam::{DVec3, Vec2, Vec3};
+
+/// Tests each triangle for each ray; for tests of other geometries.
+#[derive(Clone, Debug)]
+pub struct Brute {
+    corners: Corners,
+}
+
+impl Brute {
+    pub fn new(scene: &Scene) -> Brute {
+        Brute { corners: Corners::of(scene) }
+    }
+
+    /// Every hit of `ray` in front of its origin, in the order of distance.
+    pub fn all(&self, ray: &Ray) -> Vec<Hit> {
+        let triangles = self.corners.triangles.iter().enumerate().filter(|(k, _)| *k as u32 != ray.from);
+        let mut hits: Vec<Hit> = triangles.filter_map(|(k, corners)| intersect(ray, k as u32, *corners)).collect();
+        hits.sort_by(|a, b| a.t.total_cmp(&b.t));
+        hits
+    }
+}
+
+impl Geometry for Brute {
+    fn closest(&self, rays: &[Ray], hits: &mut [Hit]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.all(ray).first().copied().unwrap_or(Hit::MISS);
+        }
+    }
+
+    fn any(&self, rays: &[Ray], reach: &[f32], blocked: &mut [bool]) {
+        for ((ray, reach), blocked) in rays.iter().zip(reach).zip(blocked) {
+            *blocked = self.all(ray).first().is_some_and(|hit| hit.t < *reach);
+        }
+    }
+
+    fn surface(&self, triangle: u32, uv: Vec2) -> (Vec3, Vec3) {
+        self.corners.surface(triangle, uv)
+    }
+
+    fn lift(&self) -> f32 {
+        self.corners.lift
+    }
+
+    fn bounding_sphere(&self) -> (Vec3, f32) {
+        (self.corners.center, self.corners.radius)
+    }
+}
+
+/// Where `ray` meets a triangle, if it does.
+fn intersect(ray: &Ray, triangle: u32, corners: [Vec3; 3]) -> Option<Hit> {
+    debug_assert_ne!(triangle, NONE);
+    let [a, b, c] = corners.map(|v| v.as_dvec3());
+    let direction: DVec3 = ray.direction.as_dvec3();
+    let (ab, ac) = (b - a, c - a);
+    let p = direction.cross(ac);
+    let determinant = ab.dot(p);
+    if determinant == 0.0 {
+        return None;
+    }
+    let s = ray.origin.as_dvec3() - a;
+    let q = s.cross(ab);
+    let (u, v, t) = (s.dot(p) / determinant, direction.dot(q) / determinant, ac.dot(q) / determinant);
+    let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0;
+    inside.then(|| Hit { t: t as f32, triangle, uv: Vec2::new(u as f32, v as f32), back: determinant < 0.0 })
+}

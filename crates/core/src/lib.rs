@@ -1,0 +1,25 @@
+//! All the mathematics of isolux: view-independent diffuse global illumination by Monte Carlo radiosity.
+//!
+//! The crate opens no file, prints nothing and reads no clock. Imports run one way:
+//! `math -> {scene, sampling} -> mesh -> geometry -> transport -> solvers -> solution -> view`
+//! (see ARCHITECTURE.md). Units are SI and photometric throughout: metres, lumens, lux (lm/m²), candela.
+
+mod error;
+pub mod geometry;
+pub mod math;
+pub mod mesh;
+mod problem;
+pub mod run;
+pub mod sampling;
+pub mod scene;
+pub mod solution;
+pub mod solvers;
+pub mod transport;
+pub mod view;
+
+pub use error::Error;
+pub use problem::Problem;
+pub use solution::Solution;
+
+/// The version of isolux, as written into every solution's provenance.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,84 @@
+//! The regular subdivision of a triangle into m² congruent cells.
+//!
+//! In barycentric coordinates (u, v), row i holds the cells with `floor(u m) = i`: first an upright cell, then a
+//! reversed one, and so on, `2 (m - i) - 1` in all. Cell numbers run row by row: `i (2 m - i) + 2 j + reversed`.
+
+use glam::Vec2;
+
+/// Number of cells of a triangle with `m` divisions.
+pub fn count(m: u16) -> u32 {
+    u32::from(m) * u32::from(m)
+}
+
+/// The cell at barycentric coordinates `uv`; coordinates on or slightly outside the border belong to the nearest cell.
+pub fn at(uv: Vec2, m: u16) -> u32 {
+    let m = u32::from(m);
+    if m == 1 {
+        return 0;
+    }
+    let (u, v) = (uv.x * m as f32, uv.y * m as f32);
+    let i = (u.max(0.0) as u32).min(m - 1);
+    let j = (v.max(0.0) as u32).min(m - 1 - i);
+    let over = (u - i as f32) + (v - j as f32) > 1.0;
+    let reversed = u32::from(over && i + j + 2 <= m);
+    i * (2 * m - i) + 2 * j + reversed
+}
+
+/// Barycentric coordinates of the corners of `cell`, in the orientation of the triangle.
+pub fn corners(cell: u32, m: u16) -> [Vec2; 3] {
+    grid_corners(cell, m).map(|[i, j]| Vec2::new(i as f32, j as f32) / f32::from(m))
+}
+
+/// Grid coordinates (u m, v m) of the corners of `cell`, in the orientation of the triangle.
+pub fn grid_corners(cell: u32, m: u16) -> [[u32; 2]; 3] {
+    let (i, j, reversed) = row(cell, u32::from(m));
+    if reversed { [[i + 1, j + 1], [i, j + 1], [i + 1, j]] } else { [[i, j], [i + 1, j], [i, j + 1]] }
+}
+
+/// Row, place in the row, and whether the cell is reversed.
+fn row(cell: u32, m: u32) -> (u32, u32, bool) {
+    // Row i starts at i (2m - i), so i = m - sqrt(m² - cell), rounded down; the loops mend the rounding of the root.
+    let first = |i: u32| i * (2 * m - i);
+    let mut i = m - (f64::from(m * m - cell)).sqrt().ceil() as u32;
+    while i > 0 && first(i) > cell {
+        i -= 1;
+    }
+    while i + 1 < m && first(i + 1) <= cell {
+        i += 1;
+    }
+    let k = cell - first(i);
+    (i, k / 2, k % 2 == 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn centroids_lead_back_to_their_cells() {
+        for m in [1, 2, 3, 7, 64, 255, 1000] {
+            for cell in 0..count(m) {
+                let [a, b, c] = corners(cell, m);
+                assert_eq!(at((a + b + c) / 3.0, m), cell, "m = {m}");
+            }
+        }
+    }
+
+    #[test]
+    fn cells_cover_the_triangle_once_in_its_orientation() {
+        for m in [1, 2, 5, 32] {
+            let double_area = |[a, b, c]: [Vec2; 3]| (b - a).perp_dot(c - a);
+            let areas: Vec<f32> = (0..count(m)).map(|cell| double_area(corners(cell, m))).collect();
+            assert!(areas.iter().all(|a| (a * count(m) as f32 - 1.0).abs() < 1e-3), "m = {m}");
+        }
+    }
+
+    #[test]
+    fn points_on_and_beyond_the_border_have_a_cell() {
+        for uv in [Vec2::X, Vec2::Y, Vec2::ZERO, Vec2::splat(0.5), Vec2::new(-0.001, 1.001), Vec2::new(1.001, 0.001)] {
+            for m in [1, 2, 3, 100] {
+                assert!(at(uv, m) < count(m), "{uv} m = {m}");
+            }
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! What every solver is given: immutable, shared between threads.
+
+use crate::Error;
+use crate::geometry::{self, Geometry};
+use crate::mesh::{ElementMesh, Resolution};
+use crate::scene::Scene;
+
+/// A scene, cut into elements, ready to be traced.
+pub struct Problem {
+    pub scene: Scene,
+    pub mesh: ElementMesh,
+    pub geometry: Box<dyn Geometry>,
+}
+
+impl Problem {
+    /// Cuts `scene` as `resolution` asks and builds its ray structure.
+    ///
+    /// # Errors
+    /// Those of [`ElementMesh::new`].
+    pub fn new(scene: Scene, resolution: Resolution) -> Result<Problem, Error> {
+        let mesh = ElementMesh::new(&scene, resolution)?;
+        let geometry = geometry::for_scene(&scene);
+        Ok(Problem { scene, mesh, geometry })
+    }
+
+    /// The same cut a solution was computed with, see [`ElementMesh::with_divisions`].
+    ///
+    /// # Errors
+    /// Those of [`ElementMesh::with_divisions`].
+    pub fn with_divisions(scene: Scene, divisions: &[u16]) -> Result<Problem, Error> {
+        let mesh = ElementMesh::with_divisions(&scene, divisions)?;
+        let geometry = geometry::for_scene(&scene);
+        Ok(Problem { scene, mesh, geometry })
+    }
+}

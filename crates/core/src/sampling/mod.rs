@@ -1,0 +1,1 @@
+//! Sample numbers: points of the unit hypercube, by index and stream, one sequence a file.

@@ -1,0 +1,89 @@
+//! The result: how much light falls on every element, how sure that is, and where all the light went.
+
+use crate::Problem;
+use crate::math::Rgb;
+
+/// Irradiance of every element with its standard error. A solution cannot be made without its provenance.
+///
+/// Irradiance `E = b / rho` [lm/m² = lux] does not contain the texture and is defined where the reflectivity is zero; the
+/// radiosity is `B = Be + rho E` ([`Solution::radiosity`]).
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Solution {
+    /// Irradiance [lux] per element.
+    pub irradiance: Vec<Rgb>,
+    /// Standard error of the irradiance [lux] per element and channel; NaN while there are fewer than two replicates.
+    pub std_error: Vec<Rgb>,
+    pub work: Work,
+    pub balance: Balance,
+    pub provenance: Provenance,
+}
+
+/// What it cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Work {
+    pub rays: u64,
+    /// Independent replicates the standard errors come from.
+    pub replicates: u32,
+}
+
+/// Where the emitted light went [lm, luminance]. `emitted = absorbed + escaped + back_face + unshot`, to rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Balance {
+    /// Sent out by all sources.
+    pub emitted: f64,
+    /// Absorbed by surfaces.
+    pub absorbed: f64,
+    /// Left the scene without hitting anything.
+    pub escaped: f64,
+    /// Absorbed by the backs of one-sided surfaces: gaps in the model or flipped normals.
+    pub back_face: f64,
+    /// Still on its way when the solver stopped.
+    pub unshot: f64,
+}
+
+/// Where a solution comes from: enough to compute it again, bit for bit.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Provenance {
+    pub scene: String,
+    /// [`crate::scene::Scene::hash`].
+    pub scene_hash: u64,
+    pub method: String,
+    /// Parameters of the method, as `name = value`.
+    pub parameters: Vec<(String, String)>,
+    pub seed: u64,
+    /// Version of isolux.
+    pub version: String,
+}
+
+impl Solution {
+    /// Radiosity `B = Be + rho E` [lm/m²] of element `e`.
+    pub fn radiosity(&self, problem: &Problem, e: u32) -> Rgb {
+        problem.mesh.emission(e) + problem.mesh.reflectivity(e) * self.irradiance[e as usize]
+    }
+
+    /// Estimated error: the area-weighted RMS of the standard errors over the area-weighted mean, both of luminance
+    /// irradiance. NaN while the standard errors are unknown, or in a dark scene.
+    pub fn rms_error(&self, problem: &Problem) -> f64 {
+        let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
+        for e in problem.mesh.elements() {
+            let a = f64::from(problem.mesh.area(e));
+            area += a;
+            sum += a * f64::from(self.irradiance[e as usize].luminance());
+            sum_sq += a * f64::from(luminance_error(self.std_error[e as usize])).powi(2);
+        }
+        (sum_sq / area).sqrt() / (sum / area)
+    }
+}
+
+/// Standard error of the luminance, its channels taken as fully correlated (they ride on the same rays).
+pub fn luminance_error(std_error: Rgb) -> f32 {
+    std_error.luminance()
+}
+
+impl Balance {
+    /// What is missing from the balance, relative to the emitted flux; rounding only, in a correct solver.
+    pub fn residual(&self) -> f64 {
+        (self.emitted - self.absorbed - self.escaped - self.back_face - self.unshot)
+            / self.emitted.max(f64::MIN_POSITIVE)
+    }
+}

@@ -1,0 +1,61 @@
+//! The algorithms, one a file, behind one trait that knows nothing of threads, clocks or files.
+
+use crate::{Problem, Solution};
+use std::ops::Range;
+
+/// A radiosity algorithm as a sequence of steps, each made of independent pieces.
+///
+/// A driver (see [`crate::run`]) calls [`step`](Solver::step), computes the [`part`](Solver::part)s of all pieces in any
+/// order, on any threads or machines, and [`absorb`](Solver::absorb)s them **in the order of their pieces**. So the
+/// result has the same bits for any number of workers. The state is plain data (serde): saved between steps it is a
+/// checkpoint.
+pub trait Solver: Send + Sync {
+    /// The pieces of the next step, or `None` when the work is done. After the last piece of a step has been absorbed the
+    /// next call gives the next step.
+    fn step(&self) -> Option<Range<u64>>;
+
+    /// Computes one piece. Pure: the same state and piece give the same bits.
+    fn part(&self, problem: &Problem, piece: u64) -> Part;
+
+    /// Takes in the part of the next piece in order.
+    fn absorb(&mut self, problem: &Problem, part: Part);
+
+    /// The best solution so far; may be called between any two steps.
+    fn solution(&self, problem: &Problem) -> Solution;
+
+    /// How far the work is, for people.
+    fn progress(&self) -> Progress;
+}
+
+/// What tracing one piece gave: light that landed, and light that was lost.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Part {
+    pub landings: Vec<Landing>,
+    /// Flux [lm, luminance] that hit nothing.
+    pub escaped: f64,
+    /// Flux [lm, luminance] that hit the back of a one-sided surface.
+    pub back_face: f64,
+    pub rays: u64,
+}
+
+/// Light that arrived on an element.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Landing {
+    pub element: u32,
+    /// Its meaning is the solver's: a flux [lm] when shooting, a sum of radiosities [lm/m²] when gathering.
+    pub light: [f32; 3],
+}
+
+/// A snapshot of a running solver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// What the solver is doing, in a few words.
+    pub stage: &'static str,
+    pub rays: u64,
+    /// Rays the whole run will take, if known.
+    pub rays_in_all: Option<u64>,
+    /// Power not yet shot in the current complete solution, relative to the emitted power.
+    pub unshot: f64,
+    /// [`Solution::rms_error`] so far, if known.
+    pub rms_error: Option<f64>,
+}

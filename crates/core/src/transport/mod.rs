@@ -1,0 +1,1 @@
+//! How light gets from one element to another.

@@ -1,0 +1,22 @@
+//! Everything that can go wrong between bytes and scenes; each message names the file and the place in it.
+
+use std::path::PathBuf;
+
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The file cannot be opened, read or written.
+    #[error("{path}: cannot {action}: {source}", path = path.display())]
+    File { path: PathBuf, action: &'static str, source: std::io::Error },
+
+    /// The file was read but what it says is wrong. `place` is a path inside it, like `meshes/3/primitives/0`.
+    #[error("{file}: {place}: {what}")]
+    Invalid { file: String, place: String, what: String },
+
+    /// No reader or writer for this extension.
+    #[error("{path}: unknown file type; {known}", path = path.display())]
+    UnknownFormat { path: PathBuf, known: String },
+
+    /// What the file says makes no problem that can be solved.
+    #[error(transparent)]
+    Core(#[from] isolux_core::Error),
+}

@@ -1,0 +1,10 @@
+//! Bytes to scenes, and solutions to bytes. The only place in isolux that knows file formats; [`files`] is the only one
+//! that opens a file.
+
+mod error;
+pub mod export;
+pub mod files;
+pub mod import;
+pub mod solution_file;
+
+pub use error::Error;
