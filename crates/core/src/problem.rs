@@ -33,3 +33,9 @@ impl Problem {
         Ok(Problem { scene, mesh, geometry })
     }
 }
+
+impl std::fmt::Debug for Problem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Problem({}, {} elements)", self.scene.name, self.mesh.len())
+    }
+}

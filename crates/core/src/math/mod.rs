@@ -2,6 +2,7 @@
 
 pub mod color;
 pub mod frame;
+pub mod hash;
 pub mod moments;
 pub mod warp;
 

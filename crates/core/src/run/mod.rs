@@ -1,1 +1,34 @@
-//! Who drives a solver.
+//! Who drives a solver: threads, and somebody who watches.
+
+use crate::solvers::{Part, Progress, Solver};
+use crate::{Problem, Solution};
+use rayon::prelude::*;
+use std::ops::ControlFlow;
+
+/// Pieces in flight for each thread: enough that nobody waits, few enough that memory stays small.
+const PIECES_PER_THREAD: u64 = 4;
+
+/// Runs `solver` on the current rayon pool until it is done, or until `observe` breaks off, and returns the best
+/// solution it has. `observe` is called many times a second.
+///
+/// The solution has the same bits for any number of threads: parts are pure and are absorbed in the order of their pieces.
+pub fn run(
+    solver: &mut dyn Solver,
+    problem: &Problem,
+    mut observe: impl FnMut(&Progress) -> ControlFlow<()>,
+) -> Solution {
+    let window = PIECES_PER_THREAD * rayon::current_num_threads() as u64;
+    while let Some(pieces) = solver.step() {
+        let mut start = pieces.start;
+        while start < pieces.end {
+            let end = (start + window).min(pieces.end);
+            let parts: Vec<Part> = (start..end).into_par_iter().map(|piece| solver.part(problem, piece)).collect();
+            parts.into_iter().for_each(|part| solver.absorb(problem, part));
+            start = end;
+            if observe(&solver.progress()).is_break() {
+                return solver.solution(problem);
+            }
+        }
+    }
+    solver.solution(problem)
+}

@@ -1,5 +1,14 @@
 //! The algorithms, one a file, behind one trait that knows nothing of threads, clocks or files.
 
+mod allocation;
+pub mod budget;
+mod gathering;
+mod replicates;
+mod shooting;
+pub mod stochastic_jacobi;
+
+pub use stochastic_jacobi::StochasticJacobi;
+
 use crate::{Problem, Solution};
 use std::ops::Range;
 

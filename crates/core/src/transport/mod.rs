@@ -1,1 +1,8 @@
-//! How light gets from one element to another.
+//! How light gets from one element to another: the lines, and where they arrive.
+
+pub mod arrival;
+pub mod lamp;
+pub mod local_line;
+
+pub use arrival::{Arrival, arrivals};
+pub use local_line::Departure;

@@ -1,0 +1,75 @@
+//! Gathering: every element looks along local lines and averages the radiosity it sees.
+//!
+//! `E_i = Σ_j F_ij B_j`, estimated by the mean of `B_j` over the elements hit by `n_i` local lines. Its variance
+//! `(Σ_j F_ij B_j² - E_i²) / n_i` does not depend on the area: it cleans the small elements that shooting rarely hits.
+//! Unbiased for the given B. Cost: one ray each.
+
+use super::allocation::Allocation;
+use super::shooting::{BATCH, for_samples, ray_range};
+use super::{Landing, Part};
+use crate::Problem;
+use crate::geometry::{Hit, Ray};
+use crate::math::Rgb;
+use crate::sampling::Sequence;
+use crate::sampling::address::Counters;
+use crate::transport::{Arrival, Departure, arrivals};
+
+/// One sweep of gathering, ready to be traced in pieces.
+pub struct Sweep<'a> {
+    pub problem: &'a Problem,
+    pub sequence: &'a dyn Sequence,
+    pub counters: &'a Counters,
+    pub allocation: &'a Allocation,
+}
+
+impl Sweep<'_> {
+    /// Traces the gathering rays of `piece`. `light(i, n, j)` is what a ray adds to element i, of whose n rays it is one,
+    /// when it sees element j; landings are the sums over the rays of each element in this piece.
+    pub fn gather(&self, piece: u64, light: impl Fn(u32, u32, u32) -> Rgb) -> Part {
+        let range = ray_range(piece, self.allocation.rays());
+        let mut part = Part { rays: range.end - range.start, ..Part::default() };
+        let mut batch = Batch::default();
+        for share in self.allocation.shares(range) {
+            let departure = Departure::new(self.problem, share.source);
+            let first = self.counters.next(share.source) + u64::from(share.before);
+            for_samples(self.sequence, share.source, first, share.count, |sample| {
+                batch.rays.push(departure.ray(sample));
+                batch.receivers.push((share.source, share.rays));
+                if batch.rays.len() == BATCH {
+                    batch.look(self.problem, &light, &mut part);
+                }
+            });
+        }
+        batch.look(self.problem, &light, &mut part);
+        part
+    }
+}
+
+/// Rays on their way, and for whom (element, number of its rays).
+#[derive(Default)]
+struct Batch {
+    rays: Vec<Ray>,
+    receivers: Vec<(u32, u32)>,
+    hits: Vec<Hit>,
+}
+
+impl Batch {
+    /// Traces the rays, adds what they see to the landings, and empties the batch.
+    fn look(&mut self, problem: &Problem, light: &impl Fn(u32, u32, u32) -> Rgb, part: &mut Part) {
+        arrivals(problem, &self.rays, &mut self.hits, |k, arrival| {
+            let (element, rays) = self.receivers[k];
+            let seen = match arrival {
+                Arrival::Element(seen) => light(element, rays, seen),
+                Arrival::BackFace | Arrival::Escaped => Rgb::BLACK,
+            };
+            match part.landings.last_mut() {
+                Some(landing) if landing.element == element => {
+                    landing.light = (Rgb::from(landing.light) + seen).to_array()
+                }
+                _ => part.landings.push(Landing { element, light: seen.to_array() }),
+            }
+        });
+        self.rays.clear();
+        self.receivers.clear();
+    }
+}

@@ -1,0 +1,29 @@
+//! Where lines arrive.
+
+use crate::Problem;
+use crate::geometry::{Hit, Ray};
+
+/// What lies at the end of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival {
+    Element(u32),
+    /// The back of a one-sided surface, which is black.
+    BackFace,
+    /// Nothing: the line leaves the scene.
+    Escaped,
+}
+
+/// Traces `rays` and hands each ray's number and arrival to `each`, in order. `hits` is working memory.
+pub fn arrivals(problem: &Problem, rays: &[Ray], hits: &mut Vec<Hit>, mut each: impl FnMut(usize, Arrival)) {
+    hits.clear();
+    hits.resize(rays.len(), Hit::MISS);
+    problem.geometry.closest(rays, hits);
+    for (k, hit) in hits.iter().enumerate() {
+        let arrival = if hit.is_miss() {
+            Arrival::Escaped
+        } else {
+            problem.mesh.at(hit.triangle, hit.uv, hit.back).map_or(Arrival::BackFace, Arrival::Element)
+        };
+        each(k, arrival);
+    }
+}

@@ -1,0 +1,39 @@
+//! Local lines: from a uniform point of an element in a cosine-distributed direction.
+//!
+//! The nearest surface such a line hits lies on element j with probability `F_ij`, the form factor (Nusselt 1928).
+
+use crate::Problem;
+use crate::geometry::Ray;
+use crate::math::Frame;
+use crate::math::warp::{square_to_cosine_hemisphere, square_to_triangle};
+use crate::sampling::Sample;
+use glam::Vec2;
+
+/// An element from which lines depart.
+#[derive(Clone, Copy, Debug)]
+pub struct Departure<'a> {
+    problem: &'a Problem,
+    triangle: u32,
+    back: bool,
+    /// Barycentric coordinates of one corner, and the edges from it.
+    corner: Vec2,
+    edges: [Vec2; 2],
+}
+
+impl<'a> Departure<'a> {
+    pub fn new(problem: &'a Problem, element: u32) -> Departure<'a> {
+        let place = problem.mesh.place(element);
+        let [a, b, c] = problem.mesh.corners(element);
+        Departure { problem, triangle: place.triangle, back: place.back, corner: a, edges: [b - a, c - a] }
+    }
+
+    /// The local line that belongs to `sample`: its first two numbers choose the point, the others the direction.
+    pub fn ray(&self, [x1, x2, x3, x4]: Sample) -> Ray {
+        let cell = square_to_triangle(Vec2::new(x1, x2));
+        let uv = self.corner + cell.x * self.edges[0] + cell.y * self.edges[1];
+        let (point, front) = self.problem.geometry.surface(self.triangle, uv);
+        let normal = if self.back { -front } else { front };
+        let direction = Frame::about(normal).to_world(square_to_cosine_hemisphere(Vec2::new(x3, x4)));
+        Ray { origin: point + normal * self.problem.geometry.lift(), direction, from: self.triangle }
+    }
+}
