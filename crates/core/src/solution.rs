@@ -61,18 +61,24 @@ impl Solution {
         problem.mesh.emission(e) + problem.mesh.reflectivity(e) * self.irradiance[e as usize]
     }
 
-    /// Estimated error: the area-weighted RMS of the standard errors over the area-weighted mean, both of luminance
-    /// irradiance. NaN while the standard errors are unknown, or in a dark scene.
+    /// Estimated error of the whole solution, see [`relative_error`].
     pub fn rms_error(&self, problem: &Problem) -> f64 {
-        let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
-        for e in problem.mesh.elements() {
-            let a = f64::from(problem.mesh.area(e));
-            area += a;
-            sum += a * f64::from(self.irradiance[e as usize].luminance());
-            sum_sq += a * f64::from(luminance_error(self.std_error[e as usize])).powi(2);
-        }
-        (sum_sq / area).sqrt() / (sum / area)
+        relative_error(problem, |e| (self.irradiance[e as usize], self.std_error[e as usize]))
     }
+}
+
+/// The area-weighted RMS of the standard errors over the area-weighted mean, both of luminance irradiance. NaN while the
+/// standard errors are unknown, or in a dark scene. `estimate(e)` is irradiance and standard error [lux] of element e.
+pub fn relative_error(problem: &Problem, estimate: impl Fn(u32) -> (Rgb, Rgb)) -> f64 {
+    let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
+    for e in problem.mesh.elements() {
+        let a = f64::from(problem.mesh.area(e));
+        let (irradiance, std_error) = estimate(e);
+        area += a;
+        sum += a * f64::from(irradiance.luminance());
+        sum_sq += a * f64::from(luminance_error(std_error)).powi(2);
+    }
+    (sum_sq / area).sqrt() / (sum / area)
 }
 
 /// Standard error of the luminance, its channels taken as fully correlated (they ride on the same rays).

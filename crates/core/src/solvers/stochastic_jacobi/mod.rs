@@ -15,7 +15,7 @@ use super::{Part, Progress, Solver, budget};
 use crate::math::Rgb;
 use crate::math::hash::derive;
 use crate::sampling::address::Address;
-use crate::solution::{Balance, Provenance, Solution, Work};
+use crate::solution::{Balance, Provenance, Solution, Work, relative_error};
 use crate::{Error, Problem};
 use std::ops::Range;
 
@@ -118,7 +118,10 @@ impl StochasticJacobi {
         add(&mut self.balance, &self.relaxation.balance());
         self.replicate += 1;
         if self.replicates.count_in_round() >= 2 {
-            self.rms_error = Some(self.solution(problem).rms_error(problem));
+            self.rms_error = Some(relative_error(problem, |e| {
+                let (mean, variance) = self.replicates.estimate(e);
+                (mean, variance.map(f32::sqrt))
+            }));
         }
         if self.is_finished() {
             return;

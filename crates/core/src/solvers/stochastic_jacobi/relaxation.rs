@@ -67,8 +67,12 @@ pub struct Relaxation {
     indirect: Vec<Rgb>,
     /// Flux [lm] that each element has yet to shoot.
     unshot: Vec<Rgb>,
+    /// The elements that have unshot flux, in order.
+    active: Vec<u32>,
     /// What has landed in the running step.
     landed: Vec<[f64; 3]>,
+    /// In a step of few rays, the elements on which something has landed; late steps must not cost as much as early ones.
+    touched: Option<Vec<u32>>,
     /// Luminous flux [lm] that the running step shoots.
     shot: f64,
     /// Flux [lm] of each ray that left an emitting surface.
@@ -111,6 +115,8 @@ impl Relaxation {
             direct: dark(),
             indirect: dark(),
             unshot: dark(),
+            active: Vec::new(),
+            touched: None,
             landed: vec![[0.0; 3]; elements],
             shot: 0.0,
             emission_ray_flux: 0.0,
@@ -132,6 +138,8 @@ impl Relaxation {
         for flux in [&mut self.lamps, &mut self.direct, &mut self.indirect, &mut self.unshot] {
             flux.fill(Rgb::BLACK);
         }
+        self.active.clear();
+        self.landed.fill([0.0; 3]);
         (self.emission_ray_flux, self.reflected) = (0.0, 0.0);
         let emitted = self.emitted(problem);
         self.balance = Balance { emitted, unshot: emitted, ..Balance::default() };
@@ -178,9 +186,15 @@ impl Relaxation {
         self.lamps.get(i).copied().unwrap_or_default() + self.direct[i] + self.indirect[i]
     }
 
-    fn sources(&self, problem: &Problem) -> Range<u32> {
+    /// Luminous flux [lm] of every source of the running step.
+    fn sources<'a>(&'a self, problem: &'a Problem) -> Box<dyn Iterator<Item = (u32, f64)> + 'a> {
         let elements = problem.mesh.len() as u32;
-        if self.stage == Stage::Lamps { elements..elements + problem.scene.lights.len() as u32 } else { 0..elements }
+        let luminous_flux = move |i| (i, f64::from(self.flux(problem, i).luminance()));
+        match self.stage {
+            Stage::Lamps => Box::new((elements..elements + problem.scene.lights.len() as u32).map(luminous_flux)),
+            Stage::Incremental => Box::new(self.active.iter().copied().map(luminous_flux)),
+            _ => Box::new((0..elements).map(luminous_flux)),
+        }
     }
 
     /// Luminous flux of all sources [lm].
@@ -195,14 +209,13 @@ impl Relaxation {
     }
 
     fn source_flux(&self, problem: &Problem) -> f64 {
-        self.sources(problem).map(|i| f64::from(self.flux(problem, i).luminance())).sum()
+        self.sources(problem).map(|(_, flux)| flux).sum()
     }
 
     /// Prepares the first step of `stage`, or of the next stage that has something to do.
     fn enter(&mut self, stage: Stage, problem: &Problem, experience: &Experience) {
         self.stage = stage;
         self.pieces_absorbed = 0;
-        self.landed.fill([0.0; 3]);
         let rays = self.rays_of_step(problem, experience);
         let u = unit_f64(derive(self.seed, self.step));
         self.step += 1;
@@ -212,11 +225,10 @@ impl Relaxation {
                 self.merging = self.compare(problem);
                 self.merging.allocate(problem, rays, u)
             }
-            _ => {
-                let weights = self.sources(problem).map(|i| (i, f64::from(self.flux(problem, i).luminance())));
-                Allocation::systematic(weights, self.shot, rays, u)
-            }
+            _ => Allocation::systematic(self.sources(problem), self.shot, rays, u),
         };
+        let is_small = rays < problem.mesh.len() as u64 / 4;
+        self.touched = (is_small && stage != Stage::Gathering).then(Vec::new);
         if self.allocation.rays() == 0 {
             self.enter(self.following(), problem, experience);
         }
@@ -280,6 +292,9 @@ impl Relaxation {
             let landed = &mut self.landed[landing.element as usize];
             landed.iter_mut().zip(landing.light).for_each(|(sum, light)| *sum += f64::from(light));
         }
+        if let Some(touched) = &mut self.touched {
+            touched.extend(part.landings.iter().map(|landing| landing.element));
+        }
         if matches!(self.stage, Stage::Lamps | Stage::Emission | Stage::Incremental) {
             self.balance.escaped += part.escaped;
             self.balance.back_face += part.back_face;
@@ -295,30 +310,25 @@ impl Relaxation {
         }
         let rays = self.allocation.rays();
         match self.stage {
-            Stage::Lamps => {
-                store(&mut self.lamps, &self.landed);
-                self.reflect(problem, true);
-            }
+            Stage::Lamps => self.reflect(problem),
             Stage::Emission => {
                 self.emission_ray_flux = self.shot / rays as f64;
-                store(&mut self.direct, &self.landed);
-                self.reflect(problem, true);
+                self.reflect(problem);
             }
             Stage::Incremental => {
                 self.reflected_rays += rays;
-                self.indirect.iter_mut().zip(&self.landed).for_each(|(flux, landed)| *flux += to_rgb(landed));
-                self.reflect(problem, false);
+                self.reflect(problem);
                 return self.enter(Stage::Incremental, problem, experience);
             }
             Stage::Regular => {
                 let share = rays as f32 / (rays + self.reflected_rays) as f32;
                 self.reflected_rays += rays;
-                for (flux, landed) in self.indirect.iter_mut().zip(&self.landed) {
-                    *flux = *flux * (1.0 - share) + to_rgb(landed) * share;
+                for (flux, landed) in self.indirect.iter_mut().zip(&mut self.landed) {
+                    *flux = *flux * (1.0 - share) + to_rgb(&std::mem::take(landed)) * share;
                 }
             }
+            // What was gathered stays in `landed` until the estimate is read.
             Stage::Gathering => {
-                // What was gathered stays in `landed` until the estimate is read.
                 self.stage = Stage::Done;
                 return;
             }
@@ -327,23 +337,49 @@ impl Relaxation {
         self.enter(self.following(), problem, experience);
     }
 
-    /// Turns what has landed into unshot flux, added to what waits already if `keep`, and keeps the books.
-    fn reflect(&mut self, problem: &Problem, keep: bool) {
-        let mut unshot_in_all = 0.0;
-        for (e, landed) in (0..).zip(&self.landed) {
-            let unshot = &mut self.unshot[e as usize];
-            let rho = problem.mesh.reflectivity(e);
-            let reflected = rho * to_rgb(landed);
-            let absorbed = std::array::from_fn(|c| landed[c] * (1.0 - f64::from(rho.to_array()[c])));
-            *unshot = if keep { *unshot + reflected } else { reflected };
-            self.balance.absorbed += luminance(&absorbed);
-            self.reflected += f64::from(reflected.luminance());
-            unshot_in_all += f64::from(unshot.luminance());
+    /// Turns what has landed into unshot flux, and keeps the books. What an incremental step has shot is gone; what
+    /// lamps have lit waits until the surfaces have shot, too.
+    fn reflect(&mut self, problem: &Problem) {
+        if self.stage == Stage::Incremental {
+            self.active.drain(..).for_each(|e| self.unshot[e as usize] = Rgb::BLACK);
         }
+        let touched = self.touched.take().map(|mut touched| {
+            touched.sort_unstable();
+            touched.dedup();
+            touched
+        });
+        match touched {
+            Some(touched) => touched.into_iter().for_each(|e| self.reflect_element(problem, e)),
+            None => problem.mesh.elements().for_each(|e| self.reflect_element(problem, e)),
+        }
+        if self.stage == Stage::Emission && !self.lamps.is_empty() {
+            self.active.sort_unstable();
+            self.active.dedup();
+        }
+        self.balance.unshot = self.active.iter().map(|&e| f64::from(self.unshot[e as usize].luminance())).sum();
         if self.stage == Stage::Lamps {
-            unshot_in_all += self.balance.emitted - self.shot;
+            self.balance.unshot += self.balance.emitted - self.shot;
         }
-        self.balance.unshot = unshot_in_all;
+    }
+
+    fn reflect_element(&mut self, problem: &Problem, e: u32) {
+        let k = e as usize;
+        let landed = std::mem::take(&mut self.landed[k]);
+        if landed == [0.0; 3] {
+            return;
+        }
+        let flux = match self.stage {
+            Stage::Lamps => &mut self.lamps[k],
+            Stage::Emission => &mut self.direct[k],
+            _ => &mut self.indirect[k],
+        };
+        *flux += to_rgb(&landed);
+        let rho = problem.mesh.reflectivity(e);
+        let reflected = rho * to_rgb(&landed);
+        self.unshot[k] += reflected;
+        self.active.push(e);
+        self.reflected += f64::from(reflected.luminance());
+        self.balance.absorbed += luminance(&std::array::from_fn(|c| landed[c] * (1.0 - f64::from(rho.to_array()[c]))));
     }
 
     /// Radiosity [lm/m²] that element `e` reflects.
@@ -396,10 +432,6 @@ impl Relaxation {
     pub fn irradiance_so_far(&self, problem: &Problem, e: u32) -> Rgb {
         self.landed_so_far(e) / problem.mesh.area(e)
     }
-}
-
-fn store(flux: &mut [Rgb], landed: &[[f64; 3]]) {
-    flux.iter_mut().zip(landed).for_each(|(flux, landed)| *flux = to_rgb(landed));
 }
 
 fn to_rgb(sum: &[f64; 3]) -> Rgb {
