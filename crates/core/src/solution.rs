@@ -93,3 +93,29 @@ impl Balance {
             / self.emitted.max(f64::MIN_POSITIVE)
     }
 }
+
+impl std::ops::Add for Balance {
+    type Output = Balance;
+    fn add(self, other: Balance) -> Balance {
+        Balance {
+            emitted: self.emitted + other.emitted,
+            absorbed: self.absorbed + other.absorbed,
+            escaped: self.escaped + other.escaped,
+            back_face: self.back_face + other.back_face,
+            unshot: self.unshot + other.unshot,
+        }
+    }
+}
+
+impl std::ops::Div<f64> for Balance {
+    type Output = Balance;
+    fn div(self, k: f64) -> Balance {
+        Balance {
+            emitted: self.emitted / k,
+            absorbed: self.absorbed / k,
+            escaped: self.escaped / k,
+            back_face: self.back_face / k,
+            unshot: self.unshot / k,
+        }
+    }
+}

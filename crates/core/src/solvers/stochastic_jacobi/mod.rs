@@ -6,6 +6,7 @@
 //! element its standard error. Unbiased but for the unshot power, at most 10^-6 of the emitted, that each complete solution leaves.
 //! Cost: one ray a sample; time per complete solution grows like n log n with n elements.
 
+mod light;
 mod merging;
 mod relaxation;
 
@@ -115,7 +116,7 @@ impl StochasticJacobi {
     fn next_replicate(&mut self, problem: &Problem) {
         self.replicates.push(self.relaxation.rays(), self.relaxation.irradiance(problem));
         self.experience = self.relaxation.experience();
-        add(&mut self.balance, &self.relaxation.balance());
+        self.balance = self.balance + self.relaxation.balance();
         self.replicate += 1;
         if self.replicates.count_in_round() >= 2 {
             self.rms_error = Some(relative_error(problem, |e| {
@@ -182,8 +183,7 @@ impl Solver for StochasticJacobi {
             true => Rgb::grey(f32::NAN),
             false => self.replicates.estimate(e).1.map(f32::sqrt),
         };
-        let balance =
-            if unfinished { self.relaxation.balance() } else { scaled(&self.balance, 1.0 / f64::from(self.replicate)) };
+        let balance = if unfinished { self.relaxation.balance() } else { self.balance / f64::from(self.replicate) };
         Solution {
             irradiance: problem.mesh.elements().map(mean).collect(),
             std_error: problem.mesh.elements().map(std_error).collect(),
@@ -204,20 +204,7 @@ impl Solver for StochasticJacobi {
     }
 }
 
-fn add(sum: &mut Balance, b: &Balance) {
-    sum.emitted += b.emitted;
-    sum.absorbed += b.absorbed;
-    sum.escaped += b.escaped;
-    sum.back_face += b.back_face;
-    sum.unshot += b.unshot;
-}
-
-fn scaled(b: &Balance, k: f64) -> Balance {
-    Balance {
-        emitted: b.emitted * k,
-        absorbed: b.absorbed * k,
-        escaped: b.escaped * k,
-        back_face: b.back_face * k,
-        unshot: b.unshot * k,
-    }
+/// A sum kept in double precision, as a colour.
+fn to_rgb(sum: &[f64; 3]) -> Rgb {
+    Rgb::new(sum[0] as f32, sum[1] as f32, sum[2] as f32)
 }

@@ -1,8 +1,6 @@
 //! One complete solution: emission, incremental shooting, regular shooting, gathering.
-//!
-//! Light is kept as the flux that falls on each element, in two parts that converge differently: *direct* light comes
-//! straight from a source (lights without extent apart, for nothing can gather them), *indirect* light from a reflection.
 
+use super::light::{Light, Origin};
 use super::merging::{Merging, Variances, mean_irradiance, radiosity_variance};
 use crate::Problem;
 use crate::math::Rgb;
@@ -22,24 +20,16 @@ const UNSHOT_LIMIT: f64 = 1e-6;
 /// What the running step does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Stage {
+    /// Lights without extent shoot what they emit.
     Lamps,
+    /// Surfaces shoot what they emit.
     Emission,
+    /// Surfaces shoot what they have not shot yet, again and again.
     Incremental,
+    /// Surfaces shoot all they reflect, once.
     Regular,
     Gathering,
     Done,
-}
-
-impl Stage {
-    pub fn name(self) -> &'static str {
-        match self {
-            Stage::Lamps | Stage::Emission => "shooting direct light",
-            Stage::Incremental => "shooting reflected light",
-            Stage::Regular => "shooting all light again",
-            Stage::Gathering => "gathering",
-            Stage::Done => "done",
-        }
-    }
 }
 
 /// What one replicate teaches the next about where rays are best spent. It never touches an expected value.
@@ -61,18 +51,7 @@ pub struct Relaxation {
     allocation: Allocation,
     address: Address,
     counters: Counters,
-    /// Flux [lm] on each element from lights without extent; empty in a scene without them.
-    lamps: Vec<Rgb>,
-    direct: Vec<Rgb>,
-    indirect: Vec<Rgb>,
-    /// Flux [lm] that each element has yet to shoot.
-    unshot: Vec<Rgb>,
-    /// The elements that have unshot flux, in order.
-    active: Vec<u32>,
-    /// What has landed in the running step.
-    landed: Vec<[f64; 3]>,
-    /// In a step of few rays, the elements on which something has landed; late steps must not cost as much as early ones.
-    touched: Option<Vec<u32>>,
+    light: Light,
     /// Luminous flux [lm] that the running step shoots.
     shot: f64,
     /// Flux [lm] of each ray that left an emitting surface.
@@ -83,6 +62,29 @@ pub struct Relaxation {
     reflected: f64,
     merging: Merging,
     balance: Balance,
+}
+
+impl Stage {
+    /// For people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Lamps | Stage::Emission => "shooting direct light",
+            Stage::Incremental => "shooting reflected light",
+            Stage::Regular => "shooting all light again",
+            Stage::Gathering => "gathering",
+            Stage::Done => "done",
+        }
+    }
+
+    fn next(self) -> Stage {
+        match self {
+            Stage::Lamps => Stage::Emission,
+            Stage::Emission => Stage::Incremental,
+            Stage::Incremental => Stage::Regular,
+            Stage::Regular => Stage::Gathering,
+            Stage::Gathering | Stage::Done => Stage::Done,
+        }
+    }
 }
 
 impl Experience {
@@ -98,9 +100,7 @@ impl Experience {
 
 impl Relaxation {
     pub fn new(problem: &Problem, address: Address, seed: u64, rays: u64, experience: &Experience) -> Relaxation {
-        let elements = problem.mesh.len();
-        let lights = problem.scene.lights.len();
-        let dark = || vec![Rgb::BLACK; elements];
+        let (elements, lights) = (problem.mesh.len(), problem.scene.lights.len());
         let mut relaxation = Relaxation {
             seed,
             rays_planned: rays,
@@ -111,13 +111,7 @@ impl Relaxation {
             allocation: Allocation::default(),
             address,
             counters: address.counters(elements + lights),
-            lamps: if lights > 0 { dark() } else { Vec::new() },
-            direct: dark(),
-            indirect: dark(),
-            unshot: dark(),
-            active: Vec::new(),
-            touched: None,
-            landed: vec![[0.0; 3]; elements],
+            light: Light::new(elements, lights > 0),
             shot: 0.0,
             emission_ray_flux: 0.0,
             reflected_rays: 0,
@@ -134,14 +128,10 @@ impl Relaxation {
         self.seed = seed;
         self.rays_planned = rays;
         (self.rays_done, self.step, self.reflected_rays) = (0, 0, 0);
-        self.counters.reset();
-        for flux in [&mut self.lamps, &mut self.direct, &mut self.indirect, &mut self.unshot] {
-            flux.fill(Rgb::BLACK);
-        }
-        self.active.clear();
-        self.landed.fill([0.0; 3]);
         (self.emission_ray_flux, self.reflected) = (0.0, 0.0);
-        let emitted = self.emitted(problem);
+        self.counters.reset();
+        self.light.clear();
+        let emitted = self.source_flux(problem, Stage::Lamps) + self.source_flux(problem, Stage::Emission);
         self.balance = Balance { emitted, unshot: emitted, ..Balance::default() };
         self.enter(Stage::Lamps, problem, experience);
     }
@@ -162,110 +152,94 @@ impl Relaxation {
         self.balance.unshot / self.balance.emitted.max(f64::MIN_POSITIVE)
     }
 
+    /// What this complete solution teaches the next one.
+    pub fn experience(&self) -> Experience {
+        Experience { reflected_share: self.reflected / self.balance.emitted.max(f64::MIN_POSITIVE) }
+    }
+
+    /// Irradiance [lux] of element `e` as far as the running complete solution has come.
+    pub fn irradiance_so_far(&self, problem: &Problem, e: u32) -> Rgb {
+        self.light.on(e) / problem.mesh.area(e)
+    }
+
     pub fn pieces(&self) -> Range<u64> {
         0..shooting::pieces(self.allocation.rays())
     }
 
-    /// What source `i` shoots in the running step [lm].
-    fn flux(&self, problem: &Problem, i: u32) -> Rgb {
-        match self.stage {
+    /// What source `i` shoots in `stage` [lm].
+    fn flux(&self, problem: &Problem, stage: Stage, i: u32) -> Rgb {
+        match stage {
             Stage::Lamps => {
                 let light = &problem.scene.lights[i as usize - problem.mesh.len()];
                 light.flux(problem.geometry.bounding_sphere().1)
             }
             Stage::Emission => problem.mesh.emitted_flux(i),
-            Stage::Incremental => self.unshot[i as usize],
-            Stage::Regular => problem.mesh.reflectivity(i) * self.landed_so_far(i),
+            Stage::Incremental => self.light.unshot(i),
+            Stage::Regular => problem.mesh.reflectivity(i) * self.light.on(i),
             Stage::Gathering | Stage::Done => Rgb::BLACK,
         }
     }
 
-    /// All flux on element `i` [lm].
-    fn landed_so_far(&self, i: u32) -> Rgb {
-        let i = i as usize;
-        self.lamps.get(i).copied().unwrap_or_default() + self.direct[i] + self.indirect[i]
-    }
-
-    /// Luminous flux [lm] of every source of the running step.
-    fn sources<'a>(&'a self, problem: &'a Problem) -> Box<dyn Iterator<Item = (u32, f64)> + 'a> {
+    /// Luminous flux [lm] of every source of `stage`.
+    fn sources<'a>(&'a self, problem: &'a Problem, stage: Stage) -> Box<dyn Iterator<Item = (u32, f64)> + 'a> {
         let elements = problem.mesh.len() as u32;
-        let luminous_flux = move |i| (i, f64::from(self.flux(problem, i).luminance()));
-        match self.stage {
+        let luminous_flux = move |i| (i, f64::from(self.flux(problem, stage, i).luminance()));
+        match stage {
             Stage::Lamps => Box::new((elements..elements + problem.scene.lights.len() as u32).map(luminous_flux)),
-            Stage::Incremental => Box::new(self.active.iter().copied().map(luminous_flux)),
+            Stage::Incremental => Box::new(self.light.active().map(luminous_flux)),
             _ => Box::new((0..elements).map(luminous_flux)),
         }
     }
 
-    /// Luminous flux of all sources [lm].
-    fn emitted(&mut self, problem: &Problem) -> f64 {
-        [Stage::Lamps, Stage::Emission]
-            .into_iter()
-            .map(|stage| {
-                self.stage = stage;
-                self.source_flux(problem)
-            })
-            .sum()
+    fn source_flux(&self, problem: &Problem, stage: Stage) -> f64 {
+        self.sources(problem, stage).map(|(_, flux)| flux).sum()
     }
 
-    fn source_flux(&self, problem: &Problem) -> f64 {
-        self.sources(problem).map(|(_, flux)| flux).sum()
-    }
-
-    /// Prepares the first step of `stage`, or of the next stage that has something to do.
+    /// Prepares the next step of `stage`, or of the first stage after it that has something to do.
     fn enter(&mut self, stage: Stage, problem: &Problem, experience: &Experience) {
+        let mut stage = stage;
+        while stage != Stage::Done {
+            self.shot = self.source_flux(problem, stage);
+            let rays = self.rays_of_step(stage, experience);
+            let u = unit_f64(derive(self.seed, self.step));
+            self.step += 1;
+            if stage == Stage::Gathering {
+                self.merging = self.compare(problem);
+                self.allocation = self.merging.allocate(problem, rays, u);
+            } else {
+                self.allocation = Allocation::systematic(self.sources(problem, stage), self.shot, rays, u);
+                self.light.expect(rays);
+            }
+            if self.allocation.rays() > 0 {
+                break;
+            }
+            stage = stage.next();
+        }
         self.stage = stage;
         self.pieces_absorbed = 0;
-        let rays = self.rays_of_step(problem, experience);
-        let u = unit_f64(derive(self.seed, self.step));
-        self.step += 1;
-        self.allocation = match stage {
-            Stage::Done => return,
-            Stage::Gathering => {
-                self.merging = self.compare(problem);
-                self.merging.allocate(problem, rays, u)
-            }
-            _ => Allocation::systematic(self.sources(problem), self.shot, rays, u),
-        };
-        let is_small = rays < problem.mesh.len() as u64 / 4;
-        self.touched = (is_small && stage != Stage::Gathering).then(Vec::new);
-        if self.allocation.rays() == 0 {
-            self.enter(self.following(), problem, experience);
-        }
     }
 
-    /// Rays for the step about to begin; zero if there is nothing to do. Sets the flux to be shot.
+    /// Rays for a step of `stage`; zero if there is nothing to do.
     ///
-    /// Emission and reflection share the shooting rays by their expected power, so that all carry about the same power.
-    fn rays_of_step(&mut self, problem: &Problem, experience: &Experience) -> u64 {
-        self.shot = self.source_flux(problem);
+    /// Emission and reflection share the shooting rays by their expected power, so that all rays carry about the same;
+    /// half of those for reflected light go to the incremental steps, half to the regular iteration.
+    fn rays_of_step(&self, stage: Stage, experience: &Experience) -> u64 {
         let shooting = SHOOTING_SHARE * self.rays_planned as f64;
         let reflected_share = experience.reflected_share;
         let emission_rays = shooting / (1.0 + reflected_share);
         let share = self.shot / self.balance.emitted.max(f64::MIN_POSITIVE);
         let left = |rays: f64| (rays - self.rays_done as f64).max(0.0) as u64;
-        match self.stage {
-            _ if self.shot <= 0.0 && self.stage != Stage::Gathering => 0,
+        match stage {
+            Stage::Gathering if self.balance.emitted > 0.0 => left(self.rays_planned as f64),
+            _ if self.shot <= 0.0 => 0,
             Stage::Lamps | Stage::Emission => (emission_rays * share).ceil() as u64,
             Stage::Incremental if share < UNSHOT_LIMIT => 0,
-            // Half the rays for reflected light go here, half to the regular iteration.
             Stage::Incremental => {
                 let reflected_rays = 0.5 * (shooting - emission_rays);
                 (reflected_rays * share / reflected_share.max(1e-3)).ceil().max(1.0) as u64
             }
             Stage::Regular => left(shooting),
-            Stage::Gathering => left(self.rays_planned as f64),
-            Stage::Done => 0,
-        }
-    }
-
-    fn following(&self) -> Stage {
-        match self.stage {
-            Stage::Lamps => Stage::Emission,
-            Stage::Emission => Stage::Incremental,
-            Stage::Incremental => Stage::Regular,
-            Stage::Regular => Stage::Gathering,
-            Stage::Gathering | Stage::Done => Stage::Done,
+            Stage::Gathering | Stage::Done => 0,
         }
     }
 
@@ -281,20 +255,14 @@ impl Relaxation {
             });
         }
         let sweep = shooting::Sweep { problem, sequence, counters, allocation, total: self.shot };
-        sweep.shoot(piece, |i| self.flux(problem, i))
+        sweep.shoot(piece, |i| self.flux(problem, self.stage, i))
     }
 
     /// Takes in the next part; after the last one of the step, prepares the next step.
     pub fn absorb(&mut self, problem: &Problem, part: Part, experience: &Experience) {
         self.pieces_absorbed += 1;
         self.rays_done += part.rays;
-        for landing in &part.landings {
-            let landed = &mut self.landed[landing.element as usize];
-            landed.iter_mut().zip(landing.light).for_each(|(sum, light)| *sum += f64::from(light));
-        }
-        if let Some(touched) = &mut self.touched {
-            touched.extend(part.landings.iter().map(|landing| landing.element));
-        }
+        self.light.land(&part);
         if matches!(self.stage, Stage::Lamps | Stage::Emission | Stage::Incremental) {
             self.balance.escaped += part.escaped;
             self.balance.back_face += part.back_face;
@@ -310,81 +278,39 @@ impl Relaxation {
         }
         let rays = self.allocation.rays();
         match self.stage {
-            Stage::Lamps => self.reflect(problem),
+            Stage::Lamps => self.reflect(problem, Origin::Lamps),
             Stage::Emission => {
                 self.emission_ray_flux = self.shot / rays as f64;
-                self.reflect(problem);
+                self.reflect(problem, Origin::Emission);
             }
             Stage::Incremental => {
                 self.reflected_rays += rays;
-                self.reflect(problem);
+                self.light.spend_unshot();
+                self.reflect(problem, Origin::Reflection);
                 return self.enter(Stage::Incremental, problem, experience);
             }
             Stage::Regular => {
-                let share = rays as f32 / (rays + self.reflected_rays) as f32;
+                self.light.average_in(rays as f32 / (rays + self.reflected_rays) as f32);
                 self.reflected_rays += rays;
-                for (flux, landed) in self.indirect.iter_mut().zip(&mut self.landed) {
-                    *flux = *flux * (1.0 - share) + to_rgb(&std::mem::take(landed)) * share;
-                }
             }
-            // What was gathered stays in `landed` until the estimate is read.
-            Stage::Gathering => {
-                self.stage = Stage::Done;
-                return;
-            }
-            Stage::Done => {}
+            // What was gathered stays landed until the estimate is read.
+            Stage::Gathering | Stage::Done => {}
         }
-        self.enter(self.following(), problem, experience);
+        self.enter(self.stage.next(), problem, experience);
     }
 
-    /// Turns what has landed into unshot flux, and keeps the books. What an incremental step has shot is gone; what
-    /// lamps have lit waits until the surfaces have shot, too.
-    fn reflect(&mut self, problem: &Problem) {
-        if self.stage == Stage::Incremental {
-            self.active.drain(..).for_each(|e| self.unshot[e as usize] = Rgb::BLACK);
-        }
-        let touched = self.touched.take().map(|mut touched| {
-            touched.sort_unstable();
-            touched.dedup();
-            touched
-        });
-        match touched {
-            Some(touched) => touched.into_iter().for_each(|e| self.reflect_element(problem, e)),
-            None => problem.mesh.elements().for_each(|e| self.reflect_element(problem, e)),
-        }
-        if self.stage == Stage::Emission && !self.lamps.is_empty() {
-            self.active.sort_unstable();
-            self.active.dedup();
-        }
-        self.balance.unshot = self.active.iter().map(|&e| f64::from(self.unshot[e as usize].luminance())).sum();
-        if self.stage == Stage::Lamps {
-            self.balance.unshot += self.balance.emitted - self.shot;
-        }
-    }
-
-    fn reflect_element(&mut self, problem: &Problem, e: u32) {
-        let k = e as usize;
-        let landed = std::mem::take(&mut self.landed[k]);
-        if landed == [0.0; 3] {
-            return;
-        }
-        let flux = match self.stage {
-            Stage::Lamps => &mut self.lamps[k],
-            Stage::Emission => &mut self.direct[k],
-            _ => &mut self.indirect[k],
-        };
-        *flux += to_rgb(&landed);
-        let rho = problem.mesh.reflectivity(e);
-        let reflected = rho * to_rgb(&landed);
-        self.unshot[k] += reflected;
-        self.active.push(e);
-        self.reflected += f64::from(reflected.luminance());
-        self.balance.absorbed += luminance(&std::array::from_fn(|c| landed[c] * (1.0 - f64::from(rho.to_array()[c]))));
+    /// Ends a step that shot light for the first time, and keeps the books.
+    fn reflect(&mut self, problem: &Problem, origin: Origin) {
+        let landed = self.light.reflect(&problem.mesh, origin);
+        self.balance.absorbed += landed.absorbed;
+        self.reflected += landed.reflected;
+        let still_to_emit = if origin == Origin::Lamps { self.balance.emitted - self.shot } else { 0.0 };
+        self.balance.unshot = self.light.unshot_total() + still_to_emit;
     }
 
     /// Radiosity [lm/m²] that element `e` reflects.
     fn reflected_radiosity(&self, problem: &Problem, e: u32) -> Rgb {
-        problem.mesh.reflectivity(e) * self.landed_so_far(e) / problem.mesh.area(e)
+        problem.mesh.reflectivity(e) * self.light.on(e) / problem.mesh.area(e)
     }
 
     /// The variances of shooting and gathering that this complete solution leads to expect.
@@ -397,19 +323,15 @@ impl Relaxation {
             power += emitted;
             power_exitance += emitted * f64::from(mesh.emission(e).luminance());
         }
-        let direct = mean_irradiance(problem, &self.direct);
+        let direct = mean_irradiance(problem, &self.light.direct);
         let exitance = if power > 0.0 { power_exitance / power } else { 0.0 };
+        let indirect = mean_irradiance(problem, &self.light.indirect);
         let indirect_ray_flux = self.reflected / self.reflected_rays.max(1) as f64;
         let variance = radiosity_variance(problem, |e| self.reflected_radiosity(problem, e));
         Merging {
             direct: Variances::new(direct, self.emission_ray_flux, direct * exitance),
-            indirect: Variances::new(mean_irradiance(problem, &self.indirect), indirect_ray_flux, variance),
+            indirect: Variances::new(indirect, indirect_ray_flux, variance),
         }
-    }
-
-    /// What this complete solution teaches the next one.
-    pub fn experience(&self) -> Experience {
-        Experience { reflected_share: self.reflected / self.balance.emitted.max(f64::MIN_POSITIVE) }
     }
 
     /// Irradiance [lux] of every element of a finished complete solution, gathered light merged in.
@@ -422,22 +344,9 @@ impl Relaxation {
                 None => [0.0; 2],
             };
             let k = e as usize;
-            let lamps = self.lamps.get(k).copied().unwrap_or_default();
-            let shot = lamps + self.direct[k] * (1.0 - direct) + self.indirect[k] * (1.0 - indirect);
-            shot / area + to_rgb(&self.landed[k])
+            let (shot_direct, shot_indirect) = (self.light.direct[k], self.light.indirect[k]);
+            let shot = self.light.from_lamps(e) + shot_direct * (1.0 - direct) + shot_indirect * (1.0 - indirect);
+            shot / area + self.light.landed(e)
         })
     }
-
-    /// Irradiance [lux] of element `e` as far as the running complete solution has come.
-    pub fn irradiance_so_far(&self, problem: &Problem, e: u32) -> Rgb {
-        self.landed_so_far(e) / problem.mesh.area(e)
-    }
-}
-
-fn to_rgb(sum: &[f64; 3]) -> Rgb {
-    Rgb::new(sum[0] as f32, sum[1] as f32, sum[2] as f32)
-}
-
-fn luminance(sum: &[f64; 3]) -> f64 {
-    0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2]
 }

@@ -1,0 +1,161 @@
+//! The light of one complete solution: what has fallen on each element, and what waits to be shot.
+//!
+//! Light is kept as flux [lm], in parts that converge differently and are merged with gathered light separately.
+
+use super::to_rgb;
+use crate::math::Rgb;
+use crate::mesh::ElementMesh;
+use crate::solvers::Part;
+
+/// Where light on an element comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Straight from a light without extent, which nothing can gather.
+    Lamps,
+    /// Straight from an emitting surface.
+    Emission,
+    /// From a reflection.
+    Reflection,
+}
+
+/// What a step of shooting did with the light that landed [lm, luminance].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Landed {
+    pub absorbed: f64,
+    pub reflected: f64,
+}
+
+/// Flux on every element, 72 bytes each (84 in a scene with lights without extent).
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub struct Light {
+    lamps: Vec<Rgb>,
+    pub direct: Vec<Rgb>,
+    pub indirect: Vec<Rgb>,
+    unshot: Vec<Rgb>,
+    /// The elements that have unshot flux, in order.
+    active: Vec<u32>,
+    /// What has landed in the running step.
+    landed: Vec<[f64; 3]>,
+    /// In a step of few rays, the elements on which something has landed: late steps must not cost as much as early ones.
+    touched: Option<Vec<u32>>,
+}
+
+impl Light {
+    pub fn new(elements: usize, has_lamps: bool) -> Light {
+        let dark = || vec![Rgb::BLACK; elements];
+        Light {
+            lamps: if has_lamps { dark() } else { Vec::new() },
+            direct: dark(),
+            indirect: dark(),
+            unshot: dark(),
+            active: Vec::new(),
+            landed: vec![[0.0; 3]; elements],
+            touched: None,
+        }
+    }
+
+    pub fn clear(&mut self) {
+        for flux in [&mut self.lamps, &mut self.direct, &mut self.indirect, &mut self.unshot] {
+            flux.fill(Rgb::BLACK);
+        }
+        self.active.clear();
+        self.landed.fill([0.0; 3]);
+    }
+
+    /// Flux [lm] on element `e` straight from lights without extent.
+    pub fn from_lamps(&self, e: u32) -> Rgb {
+        self.lamps.get(e as usize).copied().unwrap_or_default()
+    }
+
+    /// All flux [lm] on element `e`.
+    pub fn on(&self, e: u32) -> Rgb {
+        self.from_lamps(e) + self.direct[e as usize] + self.indirect[e as usize]
+    }
+
+    /// Flux [lm] that element `e` has yet to shoot.
+    pub fn unshot(&self, e: u32) -> Rgb {
+        self.unshot[e as usize]
+    }
+
+    /// The elements that have unshot flux.
+    pub fn active(&self) -> impl Iterator<Item = u32> + '_ {
+        self.active.iter().copied()
+    }
+
+    /// Luminous flux [lm] yet to be shot.
+    pub fn unshot_total(&self) -> f64 {
+        self.active().map(|e| f64::from(self.unshot(e).luminance())).sum()
+    }
+
+    /// What has landed on element `e` in the running step.
+    pub fn landed(&self, e: u32) -> Rgb {
+        to_rgb(&self.landed[e as usize])
+    }
+
+    /// Prepares for a shooting step of `rays` rays.
+    pub fn expect(&mut self, rays: u64) {
+        self.touched = (rays < self.landed.len() as u64 / 4).then(Vec::new);
+    }
+
+    /// Takes in what landed in one part of the running step.
+    pub fn land(&mut self, part: &Part) {
+        for landing in &part.landings {
+            let landed = &mut self.landed[landing.element as usize];
+            landed.iter_mut().zip(landing.light).for_each(|(sum, light)| *sum += f64::from(light));
+        }
+        if let Some(touched) = &mut self.touched {
+            touched.extend(part.landings.iter().map(|landing| landing.element));
+        }
+    }
+
+    /// The unshot flux has been shot.
+    pub fn spend_unshot(&mut self) {
+        self.active.drain(..).for_each(|e| self.unshot[e as usize] = Rgb::BLACK);
+    }
+
+    /// Ends a shooting step: what has landed falls on its element, and what the element reflects waits to be shot.
+    pub fn reflect(&mut self, mesh: &ElementMesh, origin: Origin) -> Landed {
+        let mut total = Landed::default();
+        match self.touched.take() {
+            None => mesh.elements().for_each(|e| self.reflect_element(mesh, origin, e, &mut total)),
+            Some(mut touched) => {
+                touched.sort_unstable();
+                touched.dedup();
+                touched.into_iter().for_each(|e| self.reflect_element(mesh, origin, e, &mut total));
+            }
+        }
+        // Light of an earlier step may still wait on the same elements.
+        self.active.sort_unstable();
+        self.active.dedup();
+        total
+    }
+
+    fn reflect_element(&mut self, mesh: &ElementMesh, origin: Origin, e: u32, total: &mut Landed) {
+        let k = e as usize;
+        let landed = std::mem::take(&mut self.landed[k]);
+        if landed == [0.0; 3] {
+            return;
+        }
+        let flux = match origin {
+            Origin::Lamps => &mut self.lamps[k],
+            Origin::Emission => &mut self.direct[k],
+            Origin::Reflection => &mut self.indirect[k],
+        };
+        *flux += to_rgb(&landed);
+        let rho = mesh.reflectivity(e);
+        let reflected = rho * to_rgb(&landed);
+        self.unshot[k] += reflected;
+        self.active.push(e);
+        let absorbed: [f64; 3] = std::array::from_fn(|c| landed[c] * (1.0 - f64::from(rho.to_array()[c])));
+        total.absorbed += 0.2126 * absorbed[0] + 0.7152 * absorbed[1] + 0.0722 * absorbed[2];
+        total.reflected += f64::from(reflected.luminance());
+    }
+
+    /// Ends a regular iteration: what has landed is another estimate of all reflected light, averaged in with weight `share`.
+    pub fn average_in(&mut self, share: f32) {
+        self.touched = None;
+        for (flux, landed) in self.indirect.iter_mut().zip(&mut self.landed) {
+            *flux = *flux * (1.0 - share) + to_rgb(&std::mem::take(landed)) * share;
+        }
+    }
+}
