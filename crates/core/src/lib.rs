@@ -8,6 +8,7 @@ mod error;
 pub mod geometry;
 pub mod math;
 pub mod mesh;
+pub mod names;
 mod problem;
 pub mod run;
 pub mod sampling;

@@ -42,6 +42,12 @@ impl Image {
         Rgb::new(r, g, b)
     }
 
+    /// Greatest linear value of each channel over all texels; black for an image without texels.
+    pub fn brightest(&self) -> Rgb {
+        let codes = self.texels.iter().fold([0; 3], |most: [u8; 3], texel| std::array::from_fn(|c| most[c].max(texel[c])));
+        Rgb::from_srgb8(codes)
+    }
+
     /// Linear colour at `uv` by bilinear interpolation; (0, 0) is the upper left corner of the image.
     pub fn sample(&self, uv: Vec2, wrap_u: Wrap, wrap_v: Wrap) -> Rgb {
         let (x0, x1, fx) = wrap_u.neighbours(uv.x, self.width);

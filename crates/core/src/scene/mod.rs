@@ -9,11 +9,13 @@ pub mod check;
 mod image;
 mod light;
 mod material;
+mod shape;
 
 pub use camera::{Camera, Projection};
 pub use image::{Image, Texture, Wrap};
 pub use light::{Light, LightKind};
 pub use material::Material;
+pub use shape::{Shape, octahedron};
 
 use crate::math::Rgb;
 use glam::{Vec2, Vec3};
@@ -71,16 +73,6 @@ pub struct Object {
     pub name: String,
     /// Index into [`Scene::materials`].
     pub material: u32,
-}
-
-/// What the triangles stand for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum Shape {
-    /// The triangles are the surface.
-    #[default]
-    Triangles,
-    /// The inside of an exact sphere: the eight triangles of a regular octahedron, mapped to it with equal areas.
-    Sphere { center: Vec3, radius: f32 },
 }
 
 impl Scene {
