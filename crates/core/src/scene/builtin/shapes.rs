@@ -11,8 +11,14 @@ use std::f32::consts::{FRAC_PI_4, PI, TAU};
 #[derive(Debug)]
 pub struct Builder {
     scene: Scene,
+    object: u32,
     placement: Affine3A,
     inwards: bool,
+}
+
+/// A placement at `position`, turned about the y axis by `angle` [rad].
+pub fn standing(position: Vec3, angle: f32) -> Affine3A {
+    Affine3A::from_rotation_translation(Quat::from_rotation_y(angle), position)
 }
 
 /// A diffuse material of an 8-bit sRGB colour.
@@ -28,7 +34,7 @@ pub fn panel(name: &str, luminance: f32, tint: Rgb) -> Material {
 
 impl Builder {
     pub fn new(name: &str) -> Builder {
-        Builder { scene: Scene { name: name.to_owned(), ..Scene::default() }, placement: Affine3A::IDENTITY, inwards: false }
+        Builder { scene: Scene { name: name.to_owned(), ..Scene::default() }, object: 0, placement: Affine3A::IDENTITY, inwards: false }
     }
 
     /// Adds a material; its number is for [`Builder::object`].
@@ -39,7 +45,16 @@ impl Builder {
 
     /// Begins a new object.
     pub fn object(&mut self, name: &str, material: u32) {
+        self.object = self.scene.objects.len() as u32;
         self.scene.objects.push(Object { name: name.to_owned(), material });
+    }
+
+    /// Goes on with the object called `name`, or begins it.
+    pub fn resume(&mut self, name: &str, material: u32) {
+        match self.scene.objects.iter().position(|object| object.name == name) {
+            Some(k) => self.object = k as u32,
+            None => self.object(name, material),
+        }
     }
 
     /// Moves what follows.
@@ -72,14 +87,13 @@ impl Builder {
         let first = self.scene.vertices.len() as u32;
         let placed = corners.iter().map(|p| Vertex::at(self.placement.transform_point3(*p)));
         self.scene.vertices.extend(placed);
-        let object = (self.scene.objects.len() as u32).saturating_sub(1);
         for k in 1..corners.len() as u32 - 1 {
             let [a, b, c] = [0, k as usize, k as usize + 1].map(|k| corners[k]);
             if a != b && b != c && c != a {
                 let source = self.scene.triangles.len() as u32;
                 let (second, third) = if self.inwards { (k + 1, k) } else { (k, k + 1) };
                 let vertices = [first, first + second, first + third];
-                self.scene.triangles.push(Triangle { vertices, object, source });
+                self.scene.triangles.push(Triangle { vertices, object: self.object, source });
             }
         }
     }
