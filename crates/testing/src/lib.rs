@@ -1,1 +1,9 @@
+//! What isolux is tested with: statistics under one false-alarm budget, exact answers, projections of errors.
+//!
+//! A sampled result is judged by its own error bar, never by a tolerance chosen by eye.
 
+pub mod budget;
+pub mod exact;
+pub mod projections;
+pub mod random;
+pub mod statistics;

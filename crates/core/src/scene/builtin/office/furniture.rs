@@ -12,10 +12,10 @@ pub const SIDEBOARD_HEIGHT: f32 = 0.72;
 pub fn desk(builder: &mut Builder, palette: &Palette, number: u32, placement: Affine3A) {
     builder.place(placement);
     builder.object(&format!("desk {number} top"), palette.wood);
-    builder.rounded_cuboid(Vec3::new(-0.8, 0.71, -0.4), Vec3::new(0.8, DESK_HEIGHT, 0.4), 0.008, 2);
+    builder.rounded_cuboid(Vec3::new(-0.8, 0.71, -0.4), Vec3::new(0.8, DESK_HEIGHT, 0.4), 0.006, 1);
     builder.object(&format!("desk {number} legs"), palette.white);
     for (x, z) in [(-0.74, -0.34), (-0.74, 0.34), (0.74, -0.34), (0.74, 0.34)] {
-        builder.rod(Vec3::new(x, 0.0, z), Vec3::new(x, 0.709, z), 0.024, 16);
+        builder.rod(Vec3::new(x, 0.0, z), Vec3::new(x, 0.709, z), 0.024, 12);
     }
     builder.cuboid(Vec3::new(-0.71, 0.62, -0.355), Vec3::new(0.71, 0.68, -0.325));
     builder.object(&format!("desk {number} drawers"), palette.white);
@@ -55,12 +55,12 @@ pub fn chair(builder: &mut Builder, palette: &Palette, number: u32, placement: A
     for side in [-1.0, 1.0] {
         let middle = Vec3::new(side * 0.275, 0.655, 0.05);
         let half = Vec3::new(0.032, 0.016, 0.12);
-        builder.rounded_cuboid(middle - half, middle + half, 0.014, 2);
+        builder.rounded_cuboid(middle - half, middle + half, 0.012, 1);
     }
     builder.object(&format!("chair {number} upholstery"), palette.accents[(number % 4) as usize]);
-    builder.rounded_cuboid(Vec3::new(-0.24, 0.401, -0.23), Vec3::new(0.24, 0.481, 0.23), 0.036, 3);
+    builder.rounded_cuboid(Vec3::new(-0.24, 0.401, -0.23), Vec3::new(0.24, 0.481, 0.23), 0.036, 2);
     builder.place(placement * Affine3A::from_translation(Vec3::new(0.0, 0.6, 0.25)) * Affine3A::from_rotation_x(0.12));
-    builder.rounded_cuboid(Vec3::new(-0.22, 0.0, -0.03), Vec3::new(0.22, 0.5, 0.03), 0.029, 3);
+    builder.rounded_cuboid(Vec3::new(-0.22, 0.0, -0.03), Vec3::new(0.22, 0.5, 0.03), 0.029, 2);
 }
 
 /// A bay of shelves 0.9 m wide and 2.1 m high with books; its back is at x = 0 and it runs along z from 0.

@@ -37,7 +37,7 @@ pub fn keyboard(builder: &mut Builder, palette: &Palette, placement: Affine3A) {
         Vec3::new(0.3, 0.0165, 0.02),
     );
     builder.place(placement * mouse);
-    builder.ball(Vec3::ZERO, 1.0, 16);
+    builder.ball(Vec3::ZERO, 1.0, 12);
 }
 
 pub fn mug(builder: &mut Builder, palette: &Palette, number: u32, placement: Affine3A) {
@@ -45,7 +45,7 @@ pub fn mug(builder: &mut Builder, palette: &Palette, number: u32, placement: Aff
     let color = ((number + 2) % 4) as usize;
     builder.resume(&format!("mugs {}", color + 1), palette.accents[color]);
     let profile = [[0.0, 0.0], [0.034, 0.0], [0.04, 0.01], [0.04, 0.09], [0.036, 0.09], [0.036, 0.012], [0.0, 0.008]];
-    builder.lathe(&profile.map(Vec2::from), 20);
+    builder.lathe(&profile.map(Vec2::from), 16);
 }
 
 /// A stack of sheets and a book.
@@ -89,12 +89,12 @@ fn shade(builder: &mut Builder, name: &str, palette: &Palette, color: u32, radiu
     builder.object(&format!("{name} shade"), color);
     let outside =
         [rim, [1.0, 0.0], [0.98, 0.25], [0.88, 0.55], [0.68, 0.85], [0.4, 1.08], [0.16, 1.18], [0.14, 1.32], [0.0, 1.34]];
-    builder.lathe(&scaled(&outside), 32);
+    builder.lathe(&scaled(&outside), 24);
     builder.object(&format!("{name} inside"), palette.white);
     let inside = [[0.0, 1.14], [0.14, 1.13], [0.37, 1.04], [0.64, 0.82], [0.84, 0.53], [0.945, 0.24], rim];
-    builder.lathe(&scaled(&inside), 32);
+    builder.lathe(&scaled(&inside), 24);
     builder.object(&format!("{name} bulb"), palette.bulb);
-    builder.ball(Vec3::new(0.0, 0.62 * radius, 0.0), 0.28 * radius, 20);
+    builder.ball(Vec3::new(0.0, 0.62 * radius, 0.0), 0.28 * radius, 16);
 }
 
 /// A vase of 0.3 m.
@@ -104,7 +104,7 @@ pub fn vase(builder: &mut Builder, palette: &Palette, placement: Affine3A) {
     let outside = [[0.05, 0.0], [0.085, 0.05], [0.1, 0.11], [0.08, 0.18], [0.04, 0.24], [0.035, 0.27], [0.045, 0.3]];
     let inside = outside.iter().rev().map(|[r, y]| [r - 0.004, f32::max(*y, 0.005)]);
     let closed = [[0.0, 0.0]].into_iter().chain(outside).chain(inside).chain([[0.0, 0.005]]);
-    builder.lathe(&closed.map(Vec2::from).collect::<Vec<Vec2>>(), 28);
+    builder.lathe(&closed.map(Vec2::from).collect::<Vec<Vec2>>(), 20);
 }
 
 /// A potted plant of `height` [m], leaves and all: arching leaves around a stem by the golden angle.
@@ -113,7 +113,7 @@ pub fn plant(builder: &mut Builder, palette: &Palette, number: u32, height: f32,
     builder.place(placement * Affine3A::from_scale(Vec3::splat(height)));
     builder.resume("plant pots", if number % 2 == 0 { palette.clay } else { palette.white });
     let pot = [[0.0, 0.0], [0.14, 0.0], [0.18, 0.29], [0.19, 0.29], [0.19, 0.32], [0.17, 0.32], [0.165, 0.27], [0.0, 0.27]];
-    builder.lathe(&pot.map(Vec2::from), 24);
+    builder.lathe(&pot.map(Vec2::from), 18);
     builder.resume("plant stems", palette.soil);
     builder.rod(Vec3::new(0.0, 0.272, 0.0), Vec3::new(0.0, 0.72, 0.0), 0.012, 8);
     builder.resume("leaves", palette.leaf);

@@ -1,0 +1,90 @@
+//! One false-alarm budget for the whole suite: all statistical tests together may fail by chance once in a million runs.
+//!
+//! Every statistical test has a line in [`REGISTER`] with its number of comparisons; each comparison of the m in the table
+//! gets a significance level of `1e-6 / m` (Bonferroni). A test that is not in the table cannot be made.
+
+use crate::statistics::{p_of_chi2, p_of_t, p_of_z};
+
+/// Probability that one run of the whole suite raises a false alarm.
+pub const FALSE_ALARM: f64 = 1e-6;
+
+/// All statistical tests and how many comparisons each makes at most.
+pub const REGISTER: &[(&str, u32)] = &[
+    ("form factors of the sphere by local lines", 8),
+    ("uniform points of a sphere's element", 1),
+    ("form factors of rectangles by local lines", 3),
+    ("projections of a fair coin", 12),
+];
+
+/// Significance level of a single comparison.
+pub fn alpha() -> f64 {
+    let comparisons: u32 = REGISTER.iter().map(|(_, comparisons)| comparisons).sum();
+    FALSE_ALARM / f64::from(comparisons)
+}
+
+/// Holds a deviation in standard errors, known exactly, against the budget.
+///
+/// # Panics
+/// If it is larger than chance allows, or if `test` is not in the register.
+pub fn assert_z(test: &str, z: f64) {
+    judge(test, &format!("z = {z:.3}"), p_of_z(z));
+}
+
+/// Holds a deviation in standard errors, estimated with `dof` degrees of freedom, against the budget.
+///
+/// # Panics
+/// As [`assert_z`].
+pub fn assert_t(test: &str, t: f64, dof: f64) {
+    judge(test, &format!("t = {t:.3} with {dof} degrees of freedom"), p_of_t(t, dof));
+}
+
+/// Holds a chi-square statistic against the budget.
+///
+/// # Panics
+/// As [`assert_z`].
+pub fn assert_chi2(test: &str, chi2: f64, dof: f64) {
+    judge(test, &format!("chi² = {chi2:.2} with {dof} degrees of freedom"), p_of_chi2(chi2, dof));
+}
+
+/// Whether chance would be refuted by a p-value: how a test proves that it sees a planted fault.
+pub fn refutes(p: f64) -> bool {
+    p < alpha()
+}
+
+fn judge(test: &str, statistic: &str, p: f64) {
+    assert!(REGISTER.iter().any(|(name, _)| *name == test), "statistical test '{test}' is not in budget::REGISTER");
+    assert!(!refutes(p), "{test}: {statistic}, p = {p:.2e} is below the bound {:.2e}", alpha());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COIN: &str = "projections of a fair coin";
+
+    #[test]
+    fn names_are_unique() {
+        for (k, (name, comparisons)) in REGISTER.iter().enumerate() {
+            assert!(*comparisons > 0 && REGISTER[..k].iter().all(|(other, _)| other != name), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_chance_explains_passes() {
+        assert_z(COIN, -4.5);
+        assert_t(COIN, 6.0, 15.0);
+        assert_chi2(COIN, 120.0, 100.0);
+    }
+
+    #[test]
+    #[should_panic(expected = "z = 7.000, p = 2.56e-12 is below the bound")]
+    fn what_chance_does_not_explain_fails() {
+        assert_z(COIN, 7.0);
+    }
+
+    #[test]
+    #[should_panic(expected = "is not in budget::REGISTER")]
+    fn unregistered_tests_fail() {
+        assert_z("something new", 0.0);
+    }
+}
