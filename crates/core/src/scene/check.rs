@@ -156,7 +156,8 @@ fn no_emitter(scene: &Scene, emitters: &[EmitterFlux]) -> Option<Finding> {
 
 fn strange_scale(scene: &Scene, diagonal: f32) -> Option<Finding> {
     let place = format!("bounding box, diagonal {diagonal} m");
-    let what = |unit| format!("The scene is {unit}: is its unit really the metre? Scale it if not; flux depends on it.");
+    let what =
+        |unit| format!("The scene is {unit}: is its unit really the metre? Scale it if not; flux depends on it.");
     match diagonal {
         _ if scene.triangles.is_empty() => None,
         d if d > 1000.0 => finding(Severity::Warning, what("larger than a kilometre"), place),
@@ -183,7 +184,8 @@ fn impossible_reflectivity(scene: &Scene) -> Option<Finding> {
         let slot = &mut of_objects[triangle.object as usize];
         *slot = triangle.vertices.iter().fold(*slot, |most, &v| brightest(most, scene.vertices[v as usize].color));
     }
-    let most = |k: usize| (of_material(&scene.materials[scene.objects[k].material as usize]) * of_objects[k]).max_channel();
+    let most =
+        |k: usize| (of_material(&scene.materials[scene.objects[k].material as usize]) * of_objects[k]).max_channel();
     let guilty: Vec<(usize, f32)> = (0..scene.objects.len()).map(|k| (k, most(k))).filter(|(_, m)| *m >= 1.0).collect();
     let greatest = guilty.iter().map(|(_, m)| *m).reduce(f32::max)?;
     let place = places(guilty.iter().map(|(k, m)| format!("object '{}' ({m})", scene.objects[*k].name)));

@@ -44,7 +44,8 @@ impl Image {
 
     /// Greatest linear value of each channel over all texels; black for an image without texels.
     pub fn brightest(&self) -> Rgb {
-        let codes = self.texels.iter().fold([0; 3], |most: [u8; 3], texel| std::array::from_fn(|c| most[c].max(texel[c])));
+        let codes =
+            self.texels.iter().fold([0; 3], |most: [u8; 3], texel| std::array::from_fn(|c| most[c].max(texel[c])));
         Rgb::from_srgb8(codes)
     }
 

@@ -34,7 +34,12 @@ pub fn panel(name: &str, luminance: f32, tint: Rgb) -> Material {
 
 impl Builder {
     pub fn new(name: &str) -> Builder {
-        Builder { scene: Scene { name: name.to_owned(), ..Scene::default() }, object: 0, placement: Affine3A::IDENTITY, inwards: false }
+        Builder {
+            scene: Scene { name: name.to_owned(), ..Scene::default() },
+            object: 0,
+            placement: Affine3A::IDENTITY,
+            inwards: false,
+        }
     }
 
     /// Adds a material; its number is for [`Builder::object`].

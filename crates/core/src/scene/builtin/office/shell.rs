@@ -98,7 +98,8 @@ fn planks(builder: &mut Builder, palette: &Palette, layout: &Layout) {
             let shade = (4.0 * variety(97 * column + board)) as usize;
             builder.resume(&format!("planks {}", shade + 1), palette.planks[shade]);
             let stop = if end > layout.depth - 0.3 { layout.depth } else { end };
-            builder.cuboid(Vec3::new(x + 0.001, 0.001, start), Vec3::new(x + BOARD - 0.001, FLOOR - 0.001, stop - 0.002));
+            builder
+                .cuboid(Vec3::new(x + 0.001, 0.001, start), Vec3::new(x + BOARD - 0.001, FLOOR - 0.001, stop - 0.002));
             if stop == layout.depth {
                 break;
             }

@@ -87,8 +87,17 @@ fn shade(builder: &mut Builder, name: &str, palette: &Palette, color: u32, radiu
     let scaled = |profile: &[[f32; 2]]| -> Vec<Vec2> { profile.iter().map(|p| radius * Vec2::from(*p)).collect() };
     let rim = [0.965, 0.0];
     builder.object(&format!("{name} shade"), color);
-    let outside =
-        [rim, [1.0, 0.0], [0.98, 0.25], [0.88, 0.55], [0.68, 0.85], [0.4, 1.08], [0.16, 1.18], [0.14, 1.32], [0.0, 1.34]];
+    let outside = [
+        rim,
+        [1.0, 0.0],
+        [0.98, 0.25],
+        [0.88, 0.55],
+        [0.68, 0.85],
+        [0.4, 1.08],
+        [0.16, 1.18],
+        [0.14, 1.32],
+        [0.0, 1.34],
+    ];
     builder.lathe(&scaled(&outside), 24);
     builder.object(&format!("{name} inside"), palette.white);
     let inside = [[0.0, 1.14], [0.14, 1.13], [0.37, 1.04], [0.64, 0.82], [0.84, 0.53], [0.945, 0.24], rim];
@@ -112,7 +121,8 @@ pub fn plant(builder: &mut Builder, palette: &Palette, number: u32, height: f32,
     let vary = |what: u32| variety(u64::from(number) << 20 | what as u64);
     builder.place(placement * Affine3A::from_scale(Vec3::splat(height)));
     builder.resume("plant pots", if number % 2 == 0 { palette.clay } else { palette.white });
-    let pot = [[0.0, 0.0], [0.14, 0.0], [0.18, 0.29], [0.19, 0.29], [0.19, 0.32], [0.17, 0.32], [0.165, 0.27], [0.0, 0.27]];
+    let pot =
+        [[0.0, 0.0], [0.14, 0.0], [0.18, 0.29], [0.19, 0.29], [0.19, 0.32], [0.17, 0.32], [0.165, 0.27], [0.0, 0.27]];
     builder.lathe(&pot.map(Vec2::from), 18);
     builder.resume("plant stems", palette.soil);
     builder.rod(Vec3::new(0.0, 0.272, 0.0), Vec3::new(0.0, 0.72, 0.0), 0.012, 8);
