@@ -95,12 +95,11 @@ pub fn solve<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> 
         assert!(matrix[pivot][k] != 0.0, "the matrix is singular");
         matrix.swap(k, pivot);
         right.swap(k, pivot);
+        let (row, value) = (matrix[k], right[k]);
         for i in k + 1..N {
-            let factor = matrix[i][k] / matrix[k][k];
-            for j in k..N {
-                matrix[i][j] -= factor * matrix[k][j];
-            }
-            right[i] -= factor * right[k];
+            let factor = matrix[i][k] / row[k];
+            matrix[i].iter_mut().zip(row).for_each(|(entry, pivot)| *entry -= factor * pivot);
+            right[i] -= factor * value;
         }
     }
     for k in (0..N).rev() {

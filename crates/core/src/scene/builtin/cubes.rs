@@ -56,6 +56,6 @@ fn build(_: &Parameters) -> Result<Scene, Error> {
         let half = 0.5 * edge;
         builder.cuboid(Vec3::new(-half, 0.0, -half), Vec3::new(half, edge, half));
     }
-    builder.camera(Camera::looking_at("camera", Vec3::new(2.0, 1.6, 3.95), Vec3::new(2.0, 1.25, 0.0), 1.15));
+    builder.camera(Camera::looking_at("camera", Vec3::new(2.0, 1.7, 3.95), Vec3::new(2.0, 1.1, 0.5), 1.3));
     Ok(builder.finish())
 }

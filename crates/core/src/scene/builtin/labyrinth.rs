@@ -39,7 +39,8 @@ type Maze = [[bool; SIDE]; SIDE];
 fn build(parameters: &Parameters) -> Result<Scene, Error> {
     let rho = parameters.get("rho");
     let mut builder = Builder::new("labyrinth");
-    let faces = faces(&maze());
+    let maze = maze();
+    let faces = faces(&maze);
     for surface in ["floor", "ceiling", "wall"] {
         for level in 0..LEVELS {
             let reflectivity = Rgb::grey(level_reflectivity(rho, level));
@@ -59,7 +60,12 @@ fn build(parameters: &Parameters) -> Result<Scene, Error> {
         }
     }
     let middle = |x: usize, z: usize| Vec3::new(x as f32 + 0.5, 0.5, z as f32 + 0.5) * CELL;
-    builder.camera(Camera::looking_at("camera", middle(1, 1), middle(2, 2), 1.2));
+    builder.camera(Camera::looking_at(
+        "camera",
+        middle(1, 1),
+        if maze[1][2] { middle(2, 1) } else { middle(1, 2) },
+        1.2,
+    ));
     Ok(builder.finish())
 }
 

@@ -47,7 +47,7 @@ impl Topology {
             }
             let mut sorted = corners;
             sorted.sort_unstable();
-            let odd = !(a < b && b < c || b < c && c < a || c < a && a < b);
+            let odd = ![[a, b, c], [b, c, a], [c, a, b]].contains(&sorted);
             triangles.push((sorted, odd, t));
         }
         edges.sort_by_key(|edge| (edge.ends, edge.triangle));

@@ -43,7 +43,7 @@ pub fn chair(builder: &mut Builder, palette: &Palette, number: u32, placement: A
         builder.rod(at(0.035, 0.1), at(0.27, 0.076), 0.013, 8);
     }
     builder.rod(Vec3::new(0.0, 0.38, 0.024), Vec3::new(0.0, 0.38, 0.298), 0.014, 8);
-    builder.rod(Vec3::new(0.0, 0.37, 0.318), Vec3::new(0.0, 0.84, 0.362), 0.014, 8);
+    builder.rod(Vec3::new(0.0, 0.37, 0.32), Vec3::new(0.0, 0.84, 0.362), 0.014, 8);
     for side in [-1.0, 1.0] {
         builder.rod(Vec3::new(side * 0.258, 0.43, 0.05), Vec3::new(side * 0.275, 0.635, 0.05), 0.011, 8);
     }

@@ -89,7 +89,7 @@ fn workplace(builder: &mut Builder, palette: &Palette, number: u32, position: Ve
     things::keyboard(builder, palette, on_top(-0.1, 0.2, vary(4, 0.05)));
     things::mug(builder, palette, number, on_top(-0.52 + vary(5, 0.04), 0.1 + vary(6, 0.1), 0.0));
     things::papers(builder, palette, number, on_top(0.5, 0.18, vary(7, 0.3)));
-    if number % 2 == 0 {
+    if number.is_multiple_of(2) {
         things::desk_lamp(builder, palette, number + 1, on_top(-0.62, -0.24, 0.9));
     } else {
         things::plant(builder, palette, number, 0.3, on_top(0.6, -0.2, vary(8, 3.0)));

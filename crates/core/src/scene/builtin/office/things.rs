@@ -120,7 +120,7 @@ pub fn vase(builder: &mut Builder, palette: &Palette, placement: Affine3A) {
 pub fn plant(builder: &mut Builder, palette: &Palette, number: u32, height: f32, placement: Affine3A) {
     let vary = |what: u32| variety(u64::from(number) << 20 | what as u64);
     builder.place(placement * Affine3A::from_scale(Vec3::splat(height)));
-    builder.resume("plant pots", if number % 2 == 0 { palette.clay } else { palette.white });
+    builder.resume("plant pots", if number.is_multiple_of(2) { palette.clay } else { palette.white });
     let pot =
         [[0.0, 0.0], [0.14, 0.0], [0.18, 0.29], [0.19, 0.29], [0.19, 0.32], [0.17, 0.32], [0.165, 0.27], [0.0, 0.27]];
     builder.lathe(&pot.map(Vec2::from), 18);
