@@ -8,7 +8,6 @@ mod error;
 pub mod geometry;
 pub mod math;
 pub mod mesh;
-pub mod names;
 mod problem;
 pub mod run;
 pub mod sampling;

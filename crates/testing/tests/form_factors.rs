@@ -91,7 +91,7 @@ fn rectangles(corners: &[[[f32; 3]; 4]]) -> Scene {
 /// Deviation of the share of lines from the first rectangle that reach the front of the second.
 fn share_reaching(scene: Scene, exact: f64, scale: f32) -> f64 {
     const LINES: u64 = 400_000;
-    let problem = Problem::new(scene, Resolution::Elements(1)).unwrap();
+    let problem = Problem::new(scene, Resolution::Elements(1)).expect("rectangles can be cut");
     let mut random = Random::new(5);
     let reaches = |k: &u64| {
         let uv = square_to_triangle(random.square());

@@ -12,7 +12,7 @@ pub mod shapes;
 mod sphere;
 
 use super::Scene;
-use crate::{Error, names};
+use crate::Error;
 
 /// A scene that needs no file.
 #[derive(Debug)]
@@ -72,7 +72,7 @@ pub static BUILT_IN: [BuiltIn; 6] = [
 pub fn builtin(spec: &str) -> Result<Scene, Error> {
     let (name, assignments) = spec.split_once(':').unwrap_or((spec, ""));
     let found = BUILT_IN.iter().find(|scene| scene.name == name);
-    let scene = found.ok_or_else(|| names::unknown("built-in scene", name, BUILT_IN.iter().map(|s| s.name)))?;
+    let scene = found.ok_or_else(|| Error::unknown_name("built-in scene", name, BUILT_IN.iter().map(|s| s.name)))?;
     (scene.build)(&Parameters::parse(scene.parameters, assignments)?)
 }
 
@@ -95,7 +95,7 @@ impl Parameters {
             let k = declared
                 .iter()
                 .position(|p| p.name == name)
-                .ok_or_else(|| names::unknown("parameter of this scene", name, declared.iter().map(|p| p.name)))?;
+                .ok_or_else(|| Error::unknown_name("parameter of this scene", name, declared.iter().map(|p| p.name)))?;
             let Parameter { name, range: [least, greatest], what, .. } = declared[k];
             let number = value.parse().ok().filter(|v| (least..=greatest).contains(v));
             values[k] = number.ok_or_else(|| Error::Parameter { name, value: value.to_owned(), allowed: what })?;
@@ -114,7 +114,6 @@ impl Parameters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{ElementMesh, Resolution};
     use crate::scene::check::{Severity, check};
 
     #[test]
@@ -122,12 +121,11 @@ mod tests {
         for entry in &BUILT_IN {
             let scene = builtin(entry.name).unwrap();
             let Expected { triangles, area, flux } = entry.expected;
-            let mesh = ElementMesh::new(&scene, Resolution::Elements(1)).unwrap();
-            let [r, g, b] = mesh.total_emitted_flux();
-            let found_flux = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-            let found = format!("{}: {triangles} {} m² {found_flux} lm", entry.name, mesh.total_area());
-            assert_eq!(scene.triangles.len(), triangles, "{found}");
-            assert!((mesh.total_area() - area).abs() < 1e-4 * area, "{found}");
+            let report = check(&scene);
+            let found_flux: f64 = report.emitters.iter().map(|e| f64::from(e.flux.luminance())).sum();
+            let found = format!("{}: {} {} m² {found_flux} lm", entry.name, report.triangles, report.area);
+            assert_eq!(report.triangles, triangles, "{found}");
+            assert!((report.area - area).abs() < 1e-4 * area, "{found}");
             assert!((found_flux - flux).abs() < 1e-4 * flux, "{found}");
             assert!(!scene.cameras.is_empty() && scene.name == entry.name, "{found}");
         }
