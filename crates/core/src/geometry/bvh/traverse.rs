@@ -1,0 +1,136 @@
+//! The way of a ray through the tree, for the closest hit and for any hit.
+//!
+//! Everything is inlined into the two batch functions, so that an instruction set is entered once a batch.
+
+use super::intersect::{LeafHits, Tracer};
+use super::lanes::Instructions;
+use super::node::{Child, Leaf, Node, Tree, WIDTH};
+use crate::geometry::{Hit, Ray};
+use glam::Vec2;
+
+/// First hit of every ray.
+#[inline(always)]
+pub fn closest<I: Instructions>(tree: &Tree, rays: &[Ray], hits: &mut [Hit]) {
+    let mut stack = vec![Waiting { enter: 0.0, child: Child::ROOT }; tree.stack_size];
+    for (ray, hit) in rays.iter().zip(hits) {
+        *hit = if is_finite(ray) { closest_hit::<I>(tree, ray, &mut stack) } else { Hit::MISS };
+    }
+}
+
+/// Whether anything lies within reach of every ray.
+#[inline(always)]
+pub fn any<I: Instructions>(tree: &Tree, rays: &[Ray], reach: &[f32], blocked: &mut [bool]) {
+    let mut stack = vec![Child::ROOT; tree.stack_size];
+    for ((ray, reach), blocked) in rays.iter().zip(reach).zip(blocked) {
+        *blocked = is_finite(ray) && any_hit::<I>(tree, ray, *reach, &mut stack);
+    }
+}
+
+/// Other rays hit nothing.
+#[inline(always)]
+fn is_finite(ray: &Ray) -> bool {
+    ray.origin.is_finite() && ray.direction.is_finite()
+}
+
+/// A child whose box was hit, and the distance at which the ray enters it [m].
+#[derive(Clone, Copy)]
+struct Waiting {
+    enter: f32,
+    child: Child,
+}
+
+/// The numbers of the bits set in a mask, in rising order.
+#[inline(always)]
+fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = mask.trailing_zeros() as usize;
+        (mask != 0).then(|| {
+            mask &= mask - 1;
+            bit
+        })
+    })
+}
+
+#[inline(always)]
+fn closest_hit<I: Instructions>(tree: &Tree, ray: &Ray, stack: &mut [Waiting]) -> Hit {
+    let tracer = Tracer::<I>::new(ray);
+    let mut best = Hit { t: f32::MAX, ..Hit::MISS };
+    let mut child = Child::ROOT;
+    let mut waiting = 0;
+    loop {
+        if child.is_leaf() {
+            let leaf = &tree.leaves[child.index()];
+            if let Some(hits) = tracer.hit(leaf, best.t) {
+                take_closest(&mut best, leaf, &hits, ray.from);
+            }
+        } else {
+            let node = &tree.nodes[child.index()];
+            let (enter, mask) = tracer.enter(node, best.t);
+            waiting = push_sorted(stack, waiting, node, &enter, mask);
+        }
+        // Boxes entered at the distance of the best hit may hold an equal one of lower number.
+        child = loop {
+            if waiting == 0 {
+                return if best.is_miss() { Hit::MISS } else { best };
+            }
+            waiting -= 1;
+            if stack[waiting].enter <= best.t {
+                break stack[waiting].child;
+            }
+        };
+    }
+}
+
+/// Puts the children in `mask` on the stack, which holds `waiting`, the nearest on top. Returns how many it holds then.
+#[inline(always)]
+fn push_sorted(stack: &mut [Waiting], waiting: usize, node: &Node, enter: &[f32; WIDTH], mask: u32) -> usize {
+    let mut end = waiting;
+    for k in bits(mask) {
+        let new = Waiting { enter: enter[k], child: node.children[k] };
+        let mut place = end;
+        while place > waiting && stack[place - 1].enter < new.enter {
+            stack[place] = stack[place - 1];
+            place -= 1;
+        }
+        stack[place] = new;
+        end += 1;
+    }
+    end
+}
+
+/// Makes the closest hit of a leaf the best one if it is closer, or as close and of a lower number.
+#[inline(always)]
+fn take_closest(best: &mut Hit, leaf: &Leaf, hits: &LeafHits, from: u32) {
+    for k in bits(hits.mask) {
+        let (t, triangle) = (hits.t[k], leaf.triangles[k]);
+        if triangle != from && (t < best.t || (t == best.t && triangle < best.triangle)) {
+            *best = Hit { t, triangle, uv: Vec2::new(hits.u[k], hits.v[k]), back: hits.back >> k & 1 == 1 };
+        }
+    }
+}
+
+#[inline(always)]
+fn any_hit<I: Instructions>(tree: &Tree, ray: &Ray, reach: f32, stack: &mut [Child]) -> bool {
+    let tracer = Tracer::<I>::new(ray);
+    stack[0] = Child::ROOT;
+    let mut waiting = 1;
+    while waiting > 0 {
+        waiting -= 1;
+        let child = stack[waiting];
+        if child.is_leaf() {
+            let leaf = &tree.leaves[child.index()];
+            let blocks = |hits: LeafHits| bits(hits.mask).any(|k| hits.t[k] < reach && leaf.triangles[k] != ray.from);
+            let hits = tracer.hit(leaf, reach);
+            if hits.is_some_and(blocks) {
+                return true;
+            }
+        } else {
+            let node = &tree.nodes[child.index()];
+            for k in bits(tracer.enter(node, reach).1) {
+                stack[waiting] = node.children[k];
+                waiting += 1;
+            }
+        }
+    }
+    false
+}
