@@ -1,10 +1,10 @@
 //! One ray against the eight boxes of a node and the four triangles of a leaf.
+//!
+//! No closures over lanes here: they would not be inlined into the function that is compiled for AVX2.
 
 use super::lanes::{Instructions, Lanes};
 use super::node::{LEAF_SIZE, Leaf, Node, WIDTH};
 use crate::geometry::Ray;
-
-// Closures over lanes would not be inlined into the function that is compiled for AVX2; hence none here.
 
 /// What both tests need of a ray, computed once.
 pub struct Tracer<I: Instructions> {
@@ -38,7 +38,7 @@ pub struct LeafHits {
     pub back: u32,
     /// Distances [m].
     pub t: [f32; LEAF_SIZE],
-    /// Barycentric weights of the corners b and c.
+    /// Barycentric weights of the corners b and c: at least zero, their sum at most one.
     pub u: [f32; LEAF_SIZE],
     pub v: [f32; LEAF_SIZE],
 }
@@ -47,9 +47,8 @@ pub struct LeafHits {
 struct BoxRay<L> {
     origin: [L; 3],
     reciprocal: [L; 3],
-    /// The planes of [`Node::planes`] through which a ray of this direction enters and leaves boxes.
+    /// The side of [`Node::planes`] through which a ray of this direction enters boxes: 0 or 1.
     near: [usize; 3],
-    far: [usize; 3],
 }
 
 impl<L: Lanes<WIDTH>> BoxRay<L> {
@@ -57,31 +56,22 @@ impl<L: Lanes<WIDTH>> BoxRay<L> {
     fn new(ray: &Ray) -> Self {
         // Bounded so that zero times it is zero: an origin in the very plane of a box is inside, not NaN.
         let reciprocal = ray.direction.to_array().map(|d| 1.0 / if d.abs() < 1e-18 { 1e-18f32.copysign(d) } else { d });
-        let negative = reciprocal.map(|r| r < 0.0);
-        let lower_if = |lower: [bool; 3]| [0, 1, 2].map(|axis| if lower[axis] { axis } else { 3 + axis });
-        BoxRay {
-            origin: splat(ray.origin.to_array()),
-            reciprocal: splat(reciprocal),
-            near: lower_if(negative.map(|n| !n)),
-            far: lower_if(negative),
-        }
+        let near = reciprocal.map(|r| usize::from(r < 0.0));
+        BoxRay { origin: splat(ray.origin.to_array()), reciprocal: splat(reciprocal), near }
     }
 
-    /// Distances along the ray to one plane of every box on each axis.
+    /// Distances along the ray to the planes of every box that it meets first (`FAR` = 0) or last (1) on `axis`.
     #[inline(always)]
-    fn distances(&self, node: &Node, planes: [usize; 3]) -> [L; 3] {
-        [
-            (L::load(&node.planes[planes[0]]) - self.origin[0]) * self.reciprocal[0],
-            (L::load(&node.planes[planes[1]]) - self.origin[1]) * self.reciprocal[1],
-            (L::load(&node.planes[planes[2]]) - self.origin[2]) * self.reciprocal[2],
-        ]
+    fn distance<const FAR: usize>(&self, node: &Node, axis: usize) -> L {
+        let side = (self.near[axis] & 1) ^ FAR;
+        (L::load(&node.planes[axis][side]) - self.origin[axis]) * self.reciprocal[axis]
     }
 
     #[inline(always)]
     fn enter(&self, node: &Node, reach: f32) -> ([f32; WIDTH], u32) {
-        let [x, y, z] = self.distances(node, self.near);
+        let [x, y, z] = [self.distance::<0>(node, 0), self.distance::<0>(node, 1), self.distance::<0>(node, 2)];
         let enter = x.max(y).max(z.max(L::splat(0.0)));
-        let [x, y, z] = self.distances(node, self.far);
+        let [x, y, z] = [self.distance::<1>(node, 0), self.distance::<1>(node, 1), self.distance::<1>(node, 2)];
         let leave = x.min(y).min(z.min(L::splat(reach)));
         // Each distance is wrong by at most one and a half units in the last place; three cover both (Ize 2013).
         let mask = enter.at_most(leave * L::splat(1.0 + 3.0 * f32::EPSILON));
@@ -104,18 +94,21 @@ struct TriangleRay<L> {
 impl<L: Lanes<LEAF_SIZE>> TriangleRay<L> {
     #[inline(always)]
     fn new(ray: &Ray) -> Self {
-        let d = ray.direction.to_array();
+        let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
         let size = d.map(f32::abs);
-        let z = if size[0] > size[1] && size[0] > size[2] { 0 } else { 1 + usize::from(size[2] >= size[1]) };
+        let longer = usize::from(size[1] > size[0]);
+        let z = if size[2] > size[0].max(size[1]) { 2 } else { longer };
         // Looking against the axis mirrors the picture; exchanging the other two mirrors it back.
-        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-        let (x, y) = if d[z] < 0.0 { (y, x) } else { (x, y) };
+        const OTHERS: [[usize; 3]; 3] = [[1, 2, 1], [2, 0, 2], [0, 1, 0]];
+        let mirrored = usize::from(d[z] < 0.0);
+        let (x, y) = (OTHERS[z][mirrored], OTHERS[z][mirrored + 1]);
+        let stretch = 1.0 / d[z];
         TriangleRay {
             axes: [x, y, z],
-            origin: splat([ray.origin[x], ray.origin[y], ray.origin[z]]),
-            shear_x: L::splat(d[x] / d[z]),
-            shear_y: L::splat(d[y] / d[z]),
-            stretch: L::splat(1.0 / d[z]),
+            origin: splat([o[x], o[y], o[z]]),
+            shear_x: L::splat(d[x] * stretch),
+            shear_y: L::splat(d[y] * stretch),
+            stretch: L::splat(stretch),
         }
     }
 
@@ -156,8 +149,10 @@ impl<L: Lanes<LEAF_SIZE>> TriangleRay<L> {
         if mask == 0 {
             return None;
         }
-        let normalise = L::splat(1.0) / (wa + wb + wc);
-        Some(LeafHits { mask, back, t: t.store(), u: (wb * normalise).store(), v: (wc * normalise).store() })
+        let (sum, one) = (wa + wb + wc, L::splat(1.0));
+        let u = wb / sum;
+        let v = (wc / sum).min(one - u);
+        Some(LeafHits { mask, back, t: t.store(), u: u.store(), v: v.store() })
     }
 
     /// Distance to the planes of triangles [m]: `t = n·a / n·d`. It is bounded by the depths of the corners, which matters

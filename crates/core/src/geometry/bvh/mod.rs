@@ -13,12 +13,12 @@
 //!   two rounded products is negative only if the exact one is. A closed mesh therefore leaks no ray, through edges or
 //!   through corners.
 //!
-//! The hit is the least by distance, then by triangle number, of all triangles that pass the test: it depends neither on
-//! the tree nor on the order of traversal. All arithmetic is plain IEEE single precision without fused operations, so both
-//! paths, AVX2 and portable, give the same bits.
+//! The hit is the least by distance, then by triangle number, of all triangles that pass the test: where surfaces coincide
+//! neither the tree nor the order of traversal decides. All arithmetic is plain IEEE single precision without fused
+//! operations, so both paths, AVX2 and portable, give the same bits. (Fused products would also spoil the argument above.)
 //!
-//! Cost: about log8(triangles) nodes and two or three leaves a ray, and 80 bytes a triangle beside its corners.
-//! Lengths are exact to a few units in the last place of the distance between origin and triangle; cubes of
+//! Cost: about log8(triangles) nodes and a few leaves a ray; 75 bytes a triangle, and 36 for its corners. Distances are
+//! exact to a few roundings of the distance between origin and triangle over the cosine at which it is met. Cubes of
 //! distances must fit a float, so scenes may be from 1e-7 to 1e11 metres wide.
 
 #[cfg(target_arch = "x86_64")]

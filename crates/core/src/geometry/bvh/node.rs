@@ -28,32 +28,27 @@ impl Tree {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct Node {
-    /// `planes[axis]` are the lower bounds of the boxes along that axis [m], `planes[3 + axis]` the upper ones.
-    pub planes: [[f32; WIDTH]; 6],
+    /// `planes[axis][0]` are the lower bounds of the boxes along that axis [m], `planes[axis][1]` the upper ones.
+    pub planes: [[[f32; WIDTH]; 2]; 3],
     pub children: [Child; WIDTH],
 }
 
 impl Node {
     /// Eight boxes without inside, which no ray hits.
-    pub const EMPTY: Node = Node {
-        planes: {
-            let (low, high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
-            [low, low, low, high, high, high]
-        },
-        children: [Child::ROOT; WIDTH],
-    };
+    pub const EMPTY: Node =
+        Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [Child::ROOT; WIDTH] };
 
     pub fn set_box(&mut self, child: usize, (low, high): (Vec3, Vec3)) {
         for axis in 0..3 {
-            self.planes[axis][child] = low[axis];
-            self.planes[3 + axis][child] = high[axis];
+            self.planes[axis][0][child] = low[axis];
+            self.planes[axis][1][child] = high[axis];
         }
     }
 
     /// The box around all eight.
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        let least = |axis: usize| self.planes[axis].iter().copied().fold(f32::INFINITY, f32::min);
-        let greatest = |axis: usize| self.planes[3 + axis].iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let least = |axis: usize| self.planes[axis][0].iter().copied().fold(f32::INFINITY, f32::min);
+        let greatest = |axis: usize| self.planes[axis][1].iter().copied().fold(f32::NEG_INFINITY, f32::max);
         (Vec3::from_array([0, 1, 2].map(least)), Vec3::from_array([0, 1, 2].map(greatest)))
     }
 }

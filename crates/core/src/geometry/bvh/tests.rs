@@ -208,8 +208,10 @@ fn no_ray_leaves_a_closed_mesh_through_corners_or_edges() {
             let axes = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
             rays.extend(axes.map(|direction| Ray { origin, direction, from: NONE }));
         }
-        let escaped = closest(&bvh, &rays).iter().filter(|hit| hit.is_miss()).count();
+        let hits = closest(&bvh, &rays);
+        let escaped = hits.iter().filter(|hit| hit.is_miss()).count();
         assert_eq!(escaped, 0, "of {}", rays.len());
+        assert!(hits.iter().all(|hit| hit.uv.min_element() >= 0.0 && hit.uv.element_sum() <= 1.0));
         assert!(any(&bvh, &rays, &vec![f32::INFINITY; rays.len()]).into_iter().all(|blocked| blocked));
     }
 }

@@ -55,47 +55,47 @@ fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
 fn closest_hit<I: Instructions>(tree: &Tree, ray: &Ray, stack: &mut [Waiting]) -> Hit {
     let tracer = Tracer::<I>::new(ray);
     let mut best = Hit { t: f32::MAX, ..Hit::MISS };
-    let mut child = Child::ROOT;
+    let mut next = Some(Child::ROOT);
     let mut waiting = 0;
-    loop {
-        if child.is_leaf() {
+    while let Some(child) = next {
+        next = if child.is_leaf() {
             let leaf = &tree.leaves[child.index()];
             if let Some(hits) = tracer.hit(leaf, best.t) {
                 take_closest(&mut best, leaf, &hits, ray.from);
             }
+            None
         } else {
             let node = &tree.nodes[child.index()];
             let (enter, mask) = tracer.enter(node, best.t);
-            waiting = push_sorted(stack, waiting, node, &enter, mask);
-        }
-        // Boxes entered at the distance of the best hit may hold an equal one of lower number.
-        child = loop {
-            if waiting == 0 {
-                return if best.is_miss() { Hit::MISS } else { best };
-            }
-            waiting -= 1;
-            if stack[waiting].enter <= best.t {
-                break stack[waiting].child;
-            }
+            nearest(node, &enter, mask, stack, &mut waiting)
         };
+        // Boxes entered at the distance of the best hit may hold an equal one of lower number.
+        while next.is_none() && waiting > 0 {
+            waiting -= 1;
+            next = (stack[waiting].enter <= best.t).then_some(stack[waiting].child);
+        }
     }
+    if best.is_miss() { Hit::MISS } else { best }
 }
 
-/// Puts the children in `mask` on the stack, which holds `waiting`, the nearest on top. Returns how many it holds then.
+/// The nearest of the children in `mask`. The others go on the stack, which holds `waiting`, the farthest first.
 #[inline(always)]
-fn push_sorted(stack: &mut [Waiting], waiting: usize, node: &Node, enter: &[f32; WIDTH], mask: u32) -> usize {
-    let mut end = waiting;
-    for k in bits(mask) {
-        let new = Waiting { enter: enter[k], child: node.children[k] };
-        let mut place = end;
-        while place > waiting && stack[place - 1].enter < new.enter {
+fn nearest(node: &Node, enter: &[f32; WIDTH], mask: u32, stack: &mut [Waiting], waiting: &mut usize) -> Option<Child> {
+    let mut children = bits(mask).map(|k| Waiting { enter: enter[k], child: node.children[k] });
+    let mut nearest = children.next()?;
+    let base = *waiting;
+    for child in children {
+        let (near, far) = if child.enter < nearest.enter { (child, nearest) } else { (nearest, child) };
+        nearest = near;
+        let mut place = *waiting;
+        while place > base && stack[place - 1].enter < far.enter {
             stack[place] = stack[place - 1];
             place -= 1;
         }
-        stack[place] = new;
-        end += 1;
+        stack[place] = far;
+        *waiting += 1;
     }
-    end
+    Some(nearest.child)
 }
 
 /// Makes the closest hit of a leaf the best one if it is closer, or as close and of a lower number.
