@@ -33,7 +33,7 @@ pub fn tree(triangles: &[[Vec3; 3]]) -> Tree {
     let finite = |k: &u32| triangles[*k as usize].iter().all(|corner| corner.is_finite());
     let numbers: Vec<u32> = (0..triangles.len() as u32).filter(finite).collect();
     let bounds = numbers.iter().map(|&k| bounds(&triangles[k as usize])).fold(NOTHING, union);
-    let boxes: Vec<Aabb> = numbers.iter().map(|&k| unit_box(&triangles[k as usize], bounds)).collect();
+    let boxes: Vec<Aabb> = numbers.iter().map(|&k| unit_box(&triangles[k as usize], bounds, shift(k))).collect();
     let binary = build_bvh2(&boxes, SETTINGS, &mut Default::default());
     Collapse { triangles, numbers: &numbers, binary: &binary, pad: padding(bounds) }.run()
 }
@@ -50,11 +50,18 @@ fn bounds([a, b, c]: &[Vec3; 3]) -> Bounds {
     (a.min(*b).min(*c), a.max(*b).max(*c))
 }
 
-/// The box of a triangle, scaled so that `around` fits the unit cube.
-fn unit_box(triangle: &[Vec3; 3], around: Bounds) -> Aabb {
+/// A few millionths of the unit cube, different for each triangle: without it coincident triangles, all as good neighbours
+/// as any, would be clustered one by one into a chain.
+fn shift(number: u32) -> DVec3 {
+    let golden = |k: u32| f64::from(number.wrapping_mul(k)) / f64::from(u32::MAX);
+    DVec3::from_array([0x9e37_79b9, 0xc13f_a9a9, 0x91e1_0da5].map(golden)) * 4e-6
+}
+
+/// The box of a triangle, scaled so that `around` fits the unit cube, and shifted there.
+fn unit_box(triangle: &[Vec3; 3], around: Bounds, shift: DVec3) -> Aabb {
     let low = around.0.as_dvec3();
     let scale = 1.0 / (around.1.as_dvec3() - low).max_element().max(f64::MIN_POSITIVE);
-    let unit = |v: Vec3| ((v.as_dvec3() - low) * scale).clamp(DVec3::ZERO, DVec3::ONE).as_vec3a();
+    let unit = |v: Vec3| ((v.as_dvec3() - low) * scale + shift).as_vec3a();
     let (low, high) = bounds(triangle);
     Aabb::new(unit(low), unit(high))
 }

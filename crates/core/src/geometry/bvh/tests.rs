@@ -105,9 +105,16 @@ fn something_is_in_the_way_exactly_within_the_closest_distance() {
 #[test]
 fn both_paths_give_the_same_bits() {
     let mut random = Random(4);
-    let scene = scene(&random.soup(3000));
+    let (mut triangles, mut rays) = (random.soup(3000), random.rays(20_000));
+    // On a grid, where comparisons meet equal numbers.
+    let snap = |v: Vec3| (8.0 * v).round() / 8.0;
+    triangles.extend(random.soup(200).into_iter().map(|triangle| triangle.map(snap)));
+    rays.extend((0..20_000).map(|_| {
+        let origin = snap(random.point());
+        Ray { origin, direction: (snap(random.point()) - origin).normalize_or_zero(), from: NONE }
+    }));
+    let scene = scene(&triangles);
     let (fastest, portable) = (Bvh::new(&scene), Bvh::portable(&scene));
-    let rays = random.rays(20_000);
     let reach: Vec<f32> = rays.iter().map(|_| random.next()).collect();
     for (a, b) in closest(&fastest, &rays).iter().zip(closest(&portable, &rays)) {
         let bits = |hit: &Hit| (hit.t.to_bits(), hit.triangle, hit.uv.to_array().map(f32::to_bits), hit.back);
@@ -214,6 +221,27 @@ fn no_ray_leaves_a_closed_mesh_through_corners_or_edges() {
         assert!(hits.iter().all(|hit| hit.uv.min_element() >= 0.0 && hit.uv.element_sum() <= 1.0));
         assert!(any(&bvh, &rays, &vec![f32::INFINITY; rays.len()]).into_iter().all(|blocked| blocked));
     }
+}
+
+#[test]
+fn no_ray_from_far_outside_passes_through_a_ball() {
+    let triangles = closed(8, Vec3::normalize);
+    let mut random = Random(11);
+    let mut rays = Vec::new();
+    for origin in (0..200).map(|_| random.direction() * (2.0 + 1000.0 * random.next())) {
+        let facing = triangles.iter().flatten().filter(|corner| corner.dot(origin.normalize()) > 0.6);
+        rays.extend(facing.map(|&corner| Ray { origin, direction: (corner - origin).normalize(), from: NONE }));
+    }
+    let hits = closest(&Bvh::new(&scene(&triangles)), &rays);
+    assert_eq!(hits.iter().filter(|hit| hit.is_miss()).count(), 0, "of {}", rays.len());
+}
+
+#[test]
+fn coincident_triangles_make_no_chain() {
+    let bvh = Bvh::new(&scene(&[[Vec3::X, Vec3::Y, Vec3::Z]; 5000]));
+    assert!(bvh.tree.stack_size < 128, "{}", bvh.tree.stack_size);
+    let ray = Ray { origin: Vec3::ZERO, direction: Vec3::ONE.normalize(), from: 0 };
+    assert_eq!(closest(&bvh, &[ray])[0].triangle, 1);
 }
 
 #[test]
