@@ -33,7 +33,10 @@ pub fn tree(triangles: &[[Vec3; 3]]) -> Tree {
     let finite = |k: &u32| triangles[*k as usize].iter().all(|corner| corner.is_finite());
     let numbers: Vec<u32> = (0..triangles.len() as u32).filter(finite).collect();
     let bounds = numbers.iter().map(|&k| bounds(&triangles[k as usize])).fold(NOTHING, union);
-    let boxes: Vec<Aabb> = numbers.iter().map(|&k| unit_box(&triangles[k as usize], bounds, shift(k))).collect();
+    // In small scenes a chain does no harm, and chance would spoil the symmetry of rooms made of a few boxes.
+    let size = if numbers.len() < 1000 { 0.0 } else { 4e-6 };
+    let unit = |&k: &u32| unit_box(&triangles[k as usize], bounds, size * scatter(k));
+    let boxes: Vec<Aabb> = numbers.iter().map(unit).collect();
     let binary = build_bvh2(&boxes, SETTINGS, &mut Default::default());
     Collapse { triangles, numbers: &numbers, binary: &binary, pad: padding(bounds) }.run()
 }
@@ -50,11 +53,11 @@ fn bounds([a, b, c]: &[Vec3; 3]) -> Bounds {
     (a.min(*b).min(*c), a.max(*b).max(*c))
 }
 
-/// A few millionths of the unit cube, different for each triangle: without it coincident triangles, all as good neighbours
-/// as any, would be clustered one by one into a chain.
-fn shift(number: u32) -> DVec3 {
+/// A point of the unit cube, different for each triangle. Boxes are shifted by a little of it: without that, coincident
+/// triangles, all as good neighbours as any, would be clustered one by one into a chain.
+fn scatter(number: u32) -> DVec3 {
     let golden = |k: u32| f64::from(number.wrapping_mul(k)) / f64::from(u32::MAX);
-    DVec3::from_array([0x9e37_79b9, 0xc13f_a9a9, 0x91e1_0da5].map(golden)) * 4e-6
+    DVec3::from_array([0x9e37_79b9, 0xc13f_a9a9, 0x91e1_0da5].map(golden))
 }
 
 /// The box of a triangle, scaled so that `around` fits the unit cube, and shifted there.
