@@ -1,1 +1,3 @@
 //! Writers, one format a file.
+
+mod glb_container;
