@@ -9,6 +9,7 @@ pub mod geometry;
 pub mod math;
 pub mod mesh;
 mod problem;
+pub mod report;
 pub mod run;
 pub mod sampling;
 pub mod scene;

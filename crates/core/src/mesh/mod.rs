@@ -10,7 +10,7 @@ pub mod cells;
 mod morton;
 mod subdivide;
 
-pub use subdivide::Resolution;
+pub use subdivide::{Resolution, count as element_count};
 
 use crate::Error;
 use crate::math::Rgb;

@@ -10,12 +10,14 @@ mod image;
 mod light;
 mod material;
 mod shape;
+mod validate;
 
 pub use camera::{Camera, Projection};
 pub use image::{Image, Texture, Wrap};
 pub use light::{Light, LightKind};
 pub use material::Material;
 pub use shape::{Shape, octahedron};
+pub use validate::Fault;
 
 use crate::math::Rgb;
 use glam::{Vec2, Vec3};

@@ -1,0 +1,116 @@
+//! What a solution says about each named object: how much light it gets, and what it does with it.
+
+use crate::{Problem, Solution};
+
+/// Light on one object, both sides of two-sided surfaces counted; everything is luminance.
+///
+/// There is no standard error of the mean: errors of neighbouring elements are correlated (they are lit by the same
+/// rays), so it does not follow from the errors of the elements.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct ObjectSummary {
+    /// Index into [`crate::scene::Scene::objects`].
+    pub object: u32,
+    pub name: String,
+    pub elements: u64,
+    /// [m²]
+    pub area: f64,
+    /// Mean irradiance by area, and the least and greatest of an element [lux].
+    pub mean: f64,
+    pub min: f64,
+    pub max: f64,
+    /// Flux sent out by the object itself [lm].
+    pub emitted: f64,
+    /// Flux that falls on it [lm], `sum A E`.
+    pub incident: f64,
+    /// Flux that it reflects [lm], `sum A rho E`.
+    pub reflected: f64,
+}
+
+/// One summary for each object that has elements, in the order of the scene's objects.
+pub fn per_object(problem: &Problem, solution: &Solution) -> Vec<ObjectSummary> {
+    let (scene, mesh) = (&problem.scene, &problem.mesh);
+    let empty = |(k, object): (usize, &crate::scene::Object)| ObjectSummary {
+        object: k as u32,
+        name: object.name.clone(),
+        elements: 0,
+        area: 0.0,
+        mean: 0.0,
+        min: f64::INFINITY,
+        max: f64::NEG_INFINITY,
+        emitted: 0.0,
+        incident: 0.0,
+        reflected: 0.0,
+    };
+    let mut summaries: Vec<ObjectSummary> = scene.objects.iter().enumerate().map(empty).collect();
+    for e in mesh.elements() {
+        let irradiance = solution.irradiance[e as usize];
+        let area = f64::from(mesh.area(e));
+        let lux = f64::from(irradiance.luminance());
+        let summary = &mut summaries[scene.triangles[mesh.triangle(e) as usize].object as usize];
+        summary.elements += 1;
+        summary.area += area;
+        summary.min = summary.min.min(lux);
+        summary.max = summary.max.max(lux);
+        summary.emitted += area * f64::from(mesh.emission(e).luminance());
+        summary.incident += area * lux;
+        summary.reflected += area * f64::from((mesh.reflectivity(e) * irradiance).luminance());
+    }
+    summaries.retain(|s| s.elements > 0);
+    summaries.iter_mut().for_each(|s| s.mean = s.incident / s.area);
+    summaries
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+    use crate::mesh::Resolution;
+    use crate::scene::{Material, Object, Scene, Triangle, Vertex};
+    use crate::solution::{Balance, Provenance, Work};
+    use glam::Vec3;
+
+    #[test]
+    fn the_objects_of_a_folded_sheet_are_summed_apart() {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, 2.0 * Vec3::Z];
+        let object = |name: &str| Object { name: name.into(), material: 0 };
+        let mut material = Material::diffuse("grey", Rgb::grey(0.25));
+        material.emission = Rgb::grey(3.0);
+        let scene = Scene {
+            vertices: corners.map(Vertex::at).to_vec(),
+            triangles: [[0, 1, 2], [0, 1, 3]]
+                .iter()
+                .zip([0, 2])
+                .map(|(&vertices, object)| Triangle { vertices, object, source: object })
+                .collect(),
+            objects: vec![object("floor"), object("nothing"), object("wall")],
+            materials: vec![material],
+            ..Scene::default()
+        };
+        let problem = Problem::new(scene, Resolution::MaxEdge(0.8)).unwrap();
+        let on_wall = |e| problem.mesh.triangle(e) == 1;
+        let lux = |e: u32| if on_wall(e) { 8.0 } else { e as f32 };
+        let floor: Vec<f64> = problem.mesh.elements().filter(|&e| !on_wall(e)).map(f64::from).collect();
+        let solution = Solution {
+            irradiance: problem.mesh.elements().map(|e| Rgb::grey(lux(e))).collect(),
+            std_error: vec![Rgb::BLACK; problem.mesh.len()],
+            work: Work::default(),
+            balance: Balance::default(),
+            provenance: Provenance {
+                scene: String::new(),
+                scene_hash: 0,
+                method: String::new(),
+                parameters: vec![],
+                seed: 0,
+                version: String::new(),
+            },
+        };
+
+        let [a, b] = per_object(&problem, &solution).try_into().unwrap();
+        assert_eq!((a.name.as_str(), b.name.as_str(), b.object), ("floor", "wall", 2));
+        let close = |x: f64, y: f64| (x - y).abs() < 1e-6;
+        assert!(close(a.area, 0.5) && close(b.area, 1.0));
+        assert!(close(b.mean, 8.0) && close(b.incident, 8.0) && close(b.reflected, 2.0) && close(b.emitted, 3.0));
+        assert!(close(a.mean, floor.iter().sum::<f64>() / floor.len() as f64));
+        assert_eq!((a.min, a.max), (floor[0], floor[floor.len() - 1]));
+    }
+}
