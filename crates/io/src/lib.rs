@@ -4,6 +4,8 @@
 mod error;
 pub mod export;
 pub mod files;
+#[cfg(test)]
+mod fixture;
 pub mod import;
 pub mod solution_file;
 

@@ -59,26 +59,28 @@ impl GlbBuilder {
     /// positions need them.
     pub fn add_f32x3(&mut self, values: &[[f32; 3]]) -> usize {
         let accessor = json!({ "componentType": FLOAT, "type": "VEC3", "count": values.len() });
-        self.add_accessor(bytemuck::cast_slice(values), ARRAY_BUFFER, with_bounds(accessor, values))
+        self.add_accessor(&f32_bytes(values.as_flattened()), ARRAY_BUFFER, with_bounds(accessor, values))
     }
 
     /// Texture coordinates; gives the accessor's index.
     pub fn add_f32x2(&mut self, values: &[[f32; 2]]) -> usize {
         let accessor = json!({ "componentType": FLOAT, "type": "VEC2", "count": values.len() });
-        self.add_accessor(bytemuck::cast_slice(values), ARRAY_BUFFER, accessor)
+        self.add_accessor(&f32_bytes(values.as_flattened()), ARRAY_BUFFER, accessor)
     }
 
     /// Colours with alpha in [0, 1] as 16-bit fractions: half the size of floats, and no banding in linear values.
     pub fn add_unorm16x4(&mut self, values: &[[u16; 4]]) -> usize {
         let accessor =
             json!({ "componentType": UNSIGNED_SHORT, "normalized": true, "type": "VEC4", "count": values.len() });
-        self.add_accessor(bytemuck::cast_slice(values), ARRAY_BUFFER, accessor)
+        let bytes: Vec<u8> = values.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
+        self.add_accessor(&bytes, ARRAY_BUFFER, accessor)
     }
 
     /// Vertex indices of triangles; gives the accessor's index.
     pub fn add_indices(&mut self, indices: &[u32]) -> usize {
         let accessor = json!({ "componentType": UNSIGNED_INT, "type": "SCALAR", "count": indices.len() });
-        self.add_accessor(bytemuck::cast_slice(indices), ELEMENT_ARRAY_BUFFER, accessor)
+        let bytes: Vec<u8> = indices.iter().flat_map(|v| v.to_le_bytes()).collect();
+        self.add_accessor(&bytes, ELEMENT_ARRAY_BUFFER, accessor)
     }
 
     /// Embeds a PNG file; gives the image's index.
@@ -121,7 +123,8 @@ impl GlbBuilder {
         }
         let length = 12 + chunks.iter().map(|(_, bytes)| 8 + bytes.len()).sum::<usize>();
         let Ok(length_in_file) = u32::try_from(length) else {
-            let what = format!("{length} bytes are more than the 4 GiB that a GLB file can hold; ask for fewer elements");
+            let what =
+                format!("{length} bytes are more than the 4 GiB that a GLB file can hold; ask for fewer elements");
             return Err(Error::Invalid { file: "GLB".into(), place: "size".into(), what });
         };
         let mut file = Vec::with_capacity(length);
@@ -152,6 +155,10 @@ fn with_bounds(mut accessor: Value, values: &[[f32; 3]]) -> Value {
         accessor["max"] = json!(fold(f32::max));
     }
     accessor
+}
+
+fn f32_bytes(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
 /// Fills up to a multiple of four bytes.

@@ -1,3 +1,107 @@
-//! Writers, one format a file.
+//! Writers, one format a file. Each turns a solution into the bytes of a file; [`crate::files`] puts them on the disk.
 
-mod glb_container;
+mod csv;
+mod elements;
+pub mod glb_container;
+pub mod image;
+pub mod json;
+mod npz;
+mod ply;
+pub mod scene_glb;
+mod vtu;
+
+use crate::{Error, solution_file};
+use isolux_core::{Problem, Solution};
+use std::path::Path;
+
+/// One format a solution can be written in.
+#[derive(Clone, Copy, Debug)]
+pub struct Exporter {
+    /// By which the format is chosen; lower case, without the dot.
+    pub extension: &'static str,
+    /// What is in the file, in a few words.
+    pub what: &'static str,
+    pub write: fn(&Problem, &Solution, &ExportOptions) -> Result<Vec<u8>, Error>,
+}
+
+/// All formats. A new one is a file in this folder and a line here.
+pub const FORMATS: &[Exporter] = &[
+    Exporter {
+        extension: "isolux",
+        what: "the whole solution with its scene, to be read again",
+        write: |problem, solution, _| solution_file::write(problem, solution),
+    },
+    Exporter { extension: "ply", what: "elements as coloured triangles with their light", write: ply::write },
+    Exporter { extension: "vtu", what: "elements as cells with their light, for ParaView", write: vtu::write },
+    Exporter { extension: "csv", what: "a table with a row for each element", write: csv::write },
+    Exporter { extension: "npz", what: "arrays with a row for each element, for NumPy", write: npz::write },
+    Exporter { extension: "json", what: "a summary: totals, balance, light on each object", write: json::write },
+];
+
+/// What a writer may be told. Each uses what concerns it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExportOptions {
+    /// Name or number, from 0, of the camera of a picture; the scene's first, or a default view, if `None`.
+    pub camera: Option<String>,
+    /// Size of a picture in pixels. Without a height it follows from the camera's aspect, or is 16:9.
+    pub width: u32,
+    pub height: Option<u32>,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Exposure of a picture [EV]; automatic if `None`.
+    pub exposure: Option<f32>,
+    /// More entries for the summary: what only the caller knows, like the seconds it took.
+    pub extras: serde_json::Map<String, serde_json::Value>,
+}
+
+impl Default for ExportOptions {
+    fn default() -> ExportOptions {
+        let extras = serde_json::Map::new();
+        ExportOptions { camera: None, width: 1280, height: None, samples: 16, exposure: None, extras }
+    }
+}
+
+/// The writer for `path`, by its extension in upper or lower case.
+///
+/// # Errors
+/// [`Error::UnknownFormat`], which lists the known ones.
+pub fn for_path(path: &Path) -> Result<&'static Exporter, Error> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    FORMATS.iter().find(|format| format.extension == extension).ok_or_else(|| {
+        let known: Vec<String> = FORMATS.iter().map(|format| format!(".{}", format.extension)).collect();
+        Error::UnknownFormat {
+            path: path.to_owned(),
+            known: format!("a solution can be written as {}", known.join(", ")),
+        }
+    })
+}
+
+/// The error of an encoder that could not write `format`.
+fn cannot_encode<E: std::fmt::Display>(format: &'static str) -> impl Fn(E) -> Error {
+    move |e| Error::Invalid { file: format!(".{format} output"), place: "encoding".into(), what: e.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn formats_are_found_by_extension() {
+        assert_eq!(for_path(Path::new("a/b.x.VTU")).unwrap().extension, "vtu");
+        for path in ["a.doc", "csv", "", "a."] {
+            let message = for_path(Path::new(path)).unwrap_err().to_string();
+            assert!(message.contains(".npz") && message.contains("unknown file type"), "{message}");
+        }
+    }
+
+    #[test]
+    fn every_format_writes_the_same_bytes_each_time() {
+        let (problem, solution) = fixture::lit_box();
+        for format in FORMATS {
+            let write = || (format.write)(&problem, &solution, &ExportOptions::default()).unwrap();
+            let bytes = write();
+            assert!(!bytes.is_empty() && bytes == write(), "{}", format.extension);
+        }
+    }
+}
