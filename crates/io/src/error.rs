@@ -1,6 +1,6 @@
 //! Everything that can go wrong between bytes and scenes; each message names the file and the place in it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -19,4 +19,11 @@ pub enum Error {
     /// What the file says makes no problem that can be solved.
     #[error(transparent)]
     Core(#[from] isolux_core::Error),
+}
+
+impl Error {
+    /// The file at `path` says something wrong at `place`.
+    pub fn invalid(path: &Path, place: impl Into<String>, what: impl Into<String>) -> Error {
+        Error::Invalid { file: path.display().to_string(), place: place.into(), what: what.into() }
+    }
 }

@@ -1,0 +1,33 @@
+//! Image files to texels: PNG, JPEG, WebP and BMP, known by their first bytes, and reduced to 8-bit sRGB without alpha.
+
+use image::{ImageFormat, ImageReader, Limits};
+use isolux_core::scene::Image;
+use std::io::Cursor;
+
+const FORMATS: [ImageFormat; 4] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP, ImageFormat::Bmp];
+/// Longest edge [texels].
+const MOST_TEXELS: u32 = 1 << 14;
+/// Memory that decoding may take [bytes]: four 8-bit channels of the largest image.
+const MOST_BYTES: u64 = 4 << 28;
+
+/// Decodes an image file; `name` is for people.
+///
+/// # Errors
+/// A sentence for people: another format, a broken file, or more than 16384 texels along an edge.
+pub fn decode(bytes: &[u8], name: &str) -> Result<Image, String> {
+    let broken = |what: image::ImageError| format!("cannot decode the image: {what}");
+    let format = image::guess_format(bytes).ok().filter(|format| FORMATS.contains(format));
+    let format = format.ok_or("this is no PNG, JPEG, WebP or BMP image; convert it to one of these")?;
+    let mut limits = Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(MOST_TEXELS), Some(MOST_TEXELS));
+    limits.max_alloc = Some(MOST_BYTES);
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    reader.limits(limits);
+    let pixels = reader.decode().map_err(broken)?.into_rgb8();
+    let (width, height) = pixels.dimensions();
+    if width == 0 || height == 0 {
+        return Err("the image has no texels".to_owned());
+    }
+    let texels = pixels.pixels().map(|pixel| pixel.0).collect();
+    Ok(Image { name: name.to_owned(), width, height, texels })
+}
