@@ -5,19 +5,25 @@ use crate::Error;
 use glam::{DVec3, Vec3};
 use isolux_core::math::Rgb;
 use isolux_core::scene::{Material, Object, Scene, Triangle, Vertex};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// More triangles than this, instances counted, or more vertices are taken for a mistake: they would need more than 10 GB.
 const MOST: usize = 1 << 27;
-const UNUSED: u32 = u32::MAX;
 
 /// A scene in the making.
 pub struct SceneBuilder<'a> {
-    path: &'a Path,
+    pub path: &'a Path,
     pub scene: Scene,
     /// Triangles seen so far, dropped ones included.
     seen: u32,
     dropped: u32,
+    /// For each vertex of a reader's list: the last surface that used it, and its number in the scene. One list for all
+    /// surfaces, so that many small ones can share a long list of vertices without clearing it each time.
+    numbers: Vec<(u32, u32)>,
+    surfaces: u32,
+    /// Objects that later surfaces may join, by name and material.
+    open: BTreeMap<(String, u32), u32>,
 }
 
 /// A mesh with one material, as a reader hands it over.
@@ -28,11 +34,21 @@ pub struct Surface<'a> {
     /// Index into the materials of the scene.
     pub material: u32,
     pub vertex_count: usize,
+    /// Whether it joins an earlier object of the same name and material.
+    pub joins: bool,
 }
 
 impl<'a> SceneBuilder<'a> {
     pub fn new(path: &'a Path) -> SceneBuilder<'a> {
-        SceneBuilder { path, scene: Scene::default(), seen: 0, dropped: 0 }
+        SceneBuilder {
+            path,
+            scene: Scene::default(),
+            seen: 0,
+            dropped: 0,
+            numbers: Vec::new(),
+            surfaces: 0,
+            open: BTreeMap::new(),
+        }
     }
 
     /// Adds an object: `triangles` are indices of vertices, and `vertex` gives the vertex of an index below
@@ -48,9 +64,14 @@ impl<'a> SceneBuilder<'a> {
         mut vertex: impl FnMut(u32) -> Vertex,
     ) -> Result<(), Error> {
         let place = surface.place;
-        let object = self.scene.objects.len() as u32;
+        let key = (surface.name, surface.material);
+        let known = self.open.get(&key).copied().filter(|_| surface.joins);
+        let object = known.unwrap_or(self.scene.objects.len() as u32);
         let first_triangle = self.scene.triangles.len();
-        let mut numbers = vec![UNUSED; surface.vertex_count];
+        self.surfaces += 1;
+        if self.numbers.len() < surface.vertex_count {
+            self.numbers.resize(surface.vertex_count, (0, 0));
+        }
         for corners in triangles {
             let source = self.seen;
             self.seen += 1;
@@ -61,20 +82,19 @@ impl<'a> SceneBuilder<'a> {
             }
             let mut vertices = [0; 3];
             for (number, corner) in vertices.iter_mut().zip(corners) {
-                let Some(known) = numbers.get_mut(corner as usize) else {
-                    let count = surface.vertex_count;
+                let count = surface.vertex_count;
+                if corner as usize >= count {
                     return Err(
                         self.error(place, format!("a triangle uses vertex {corner}, but there are only {count}"))
                     );
-                };
-                if *known == UNUSED {
+                }
+                if self.numbers[corner as usize].0 != self.surfaces {
                     let vertex = vertex(corner);
-                    check(&vertex)
-                        .map_err(|what| Error::invalid(self.path, place, format!("vertex {corner}: {what}")))?;
-                    *known = self.scene.vertices.len() as u32;
+                    check(&vertex).map_err(|what| self.error(place, format!("vertex {corner}: {what}")))?;
+                    self.numbers[corner as usize] = (self.surfaces, self.scene.vertices.len() as u32);
                     self.scene.vertices.push(vertex);
                 }
-                *number = *known;
+                *number = self.numbers[corner as usize].1;
             }
             if has_area(vertices.map(|v| self.scene.vertices[v as usize].position)) {
                 self.scene.triangles.push(Triangle { vertices, object, source });
@@ -82,8 +102,9 @@ impl<'a> SceneBuilder<'a> {
                 self.dropped += 1;
             }
         }
-        if self.scene.triangles.len() > first_triangle {
-            self.scene.objects.push(Object { name: surface.name, material: surface.material });
+        if known.is_none() && self.scene.triangles.len() > first_triangle {
+            self.scene.objects.push(Object { name: key.0.clone(), material: key.1 });
+            self.open.insert(key, object);
         }
         Ok(())
     }
@@ -101,6 +122,15 @@ impl<'a> SceneBuilder<'a> {
         }
         self.scene.materials.push(material);
         Ok(self.scene.materials.len() as u32 - 1)
+    }
+
+    /// Adds what formats without materials get, and says so: grey of reflectivity 0.5, two-sided.
+    ///
+    /// # Errors
+    /// None in practice; those of [`SceneBuilder::material`].
+    pub fn default_material(&mut self) -> Result<u32, Error> {
+        self.remark("surfaces without a material are taken as grey, reflectivity 0.5 on both sides");
+        self.material(Material { two_sided: true, ..Material::diffuse("default", Rgb::grey(0.5)) }, "default material")
     }
 
     /// Decodes an image file, adds the image and returns its number.
