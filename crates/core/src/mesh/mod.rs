@@ -7,6 +7,8 @@
 
 mod average;
 pub mod cells;
+mod clip;
+mod mip;
 mod morton;
 mod subdivide;
 
@@ -16,6 +18,7 @@ use crate::Error;
 use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
 use crate::scene::Scene;
+use average::Averages;
 use glam::{Vec2, Vec3};
 
 /// Elements of all triangles, struct of arrays, 28 bytes an element.
@@ -77,14 +80,15 @@ impl ElementMesh {
             reflectivity: Vec::with_capacity(total),
             emission: Vec::with_capacity(total),
         };
+        let averages = Averages::new(scene);
         for t in morton::order(scene) {
-            mesh.push_triangle(scene, t, divisions[t as usize]);
+            mesh.push_triangle(scene, &averages, t, divisions[t as usize]);
         }
         mesh.check_finite()?;
         Ok(mesh)
     }
 
-    fn push_triangle(&mut self, scene: &Scene, t: u32, divisions: u16) {
+    fn push_triangle(&mut self, scene: &Scene, averages: &Averages, t: u32, divisions: u16) {
         let material = scene.material_of(t);
         let cell_count = cells::count(divisions);
         self.sides[t as usize] = TriangleElements {
@@ -96,7 +100,7 @@ impl ElementMesh {
         };
         let first = self.triangle.len();
         for cell in 0..cell_count {
-            let (reflectivity, emission) = average::over_cell(scene, t, cells::corners(cell, divisions));
+            let (reflectivity, emission) = averages.over_cell(t, cells::corners(cell, divisions));
             self.triangle.push(t);
             self.reflectivity.push(reflectivity);
             self.emission.push(emission);

@@ -73,7 +73,8 @@ impl Wrap {
         (self.texel_index(floor as i64, size), self.texel_index(floor as i64 + 1, size), x - floor)
     }
 
-    fn texel_index(self, index: i64, size: u32) -> u32 {
+    /// The texel that stands at `index`, which may lie outside `0..size`.
+    pub fn texel_index(self, index: i64, size: u32) -> u32 {
         let size = i64::from(size);
         let wrapped = match self {
             Wrap::Repeat => index.rem_euclid(size),
