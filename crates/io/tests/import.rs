@@ -1,5 +1,7 @@
 //! Reading scenes: exact answers on tiny files, and the real rooms.
 
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
+
 mod common;
 
 use common::{floats, folder, glb, png, quad, write};
@@ -250,11 +252,23 @@ fn what_is_not_diffuse_is_said_in_one_sentence() {
     material["normalTexture"] = json!({"index": 0});
     material["alphaMode"] = json!("BLEND");
     document["animations"] = json!([]);
-    document["extensionsUsed"] = json!(["ACME_glitter"]);
+    document["extensionsUsed"] = json!(["ACME_glitter", "KHR_materials_clearcoat", "KHR_materials_unlit"]);
     let scene = read_glb(&document, &binary);
     assert_eq!(scene.remarks.len(), 2, "{:?}", scene.remarks);
     assert!(has_remark(&scene, "1 of 1 materials are metallic"));
-    assert!(has_remark(&scene, "extension ACME_glitter (1), normal maps (1), transparent materials"));
+    assert!(has_remark(
+        &scene,
+        "extension ACME_glitter (1), extension KHR_materials_clearcoat (1), normal maps (1), transparent materials"
+    ));
+}
+
+#[test]
+fn unlit_materials_reflect_their_colour_and_say_so() {
+    let (mut document, binary) = quad();
+    document["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
+    let scene = read_glb(&document, &binary);
+    assert_eq!((scene.materials[0].reflectivity, scene.materials[0].is_emitter()), (Rgb::grey(0.5), false));
+    assert!(has_remark(&scene, "1 of 1 materials are unlit"));
 }
 
 #[test]

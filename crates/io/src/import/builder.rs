@@ -67,7 +67,7 @@ impl<'a> SceneBuilder<'a> {
         let key = (surface.name, surface.material);
         let known = self.open.get(&key).copied().filter(|_| surface.joins);
         let object = known.unwrap_or(self.scene.objects.len() as u32);
-        let first_triangle = self.scene.triangles.len();
+        let (first_vertex, first_triangle) = (self.scene.vertices.len(), self.scene.triangles.len());
         self.surfaces += 1;
         if self.numbers.len() < surface.vertex_count {
             self.numbers.resize(surface.vertex_count, (0, 0));
@@ -102,7 +102,9 @@ impl<'a> SceneBuilder<'a> {
                 self.dropped += 1;
             }
         }
-        if known.is_none() && self.scene.triangles.len() > first_triangle {
+        if self.scene.triangles.len() == first_triangle {
+            self.scene.vertices.truncate(first_vertex);
+        } else if known.is_none() {
             self.scene.objects.push(Object { name: key.0.clone(), material: key.1 });
             self.open.insert(key, object);
         }

@@ -4,14 +4,18 @@ use crate::Error;
 use gltf::json::Root;
 use std::path::Path;
 
-/// Extensions that are understood, or that concern only what diffuse light does not see.
-const KNOWN_EXTENSIONS: &[&str] = &[
+/// Extensions that are understood.
+const UNDERSTOOD: &[&str] = &[
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
+];
+
+/// Extensions that concern only what diffuse light does not see, so that a file can be read without them.
+const HARMLESS: &[&str] = &[
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_dispersion",
@@ -94,7 +98,7 @@ pub fn parse(path: &Path, json: &[u8]) -> Result<Root, Error> {
         return Err(Error::invalid(path, "asset/version", what));
     }
     for (k, name) in head.extensions_required.iter().enumerate() {
-        if !KNOWN_EXTENSIONS.contains(&name.as_str()) {
+        if !UNDERSTOOD.contains(&name.as_str()) && !HARMLESS.contains(&name.as_str()) {
             let what = format!("the file cannot be read without {name}, which isolux does not know; export it without");
             return Err(Error::invalid(path, format!("extensionsRequired/{k}"), what));
         }
@@ -111,7 +115,7 @@ fn from_json<T: serde::de::DeserializeOwned>(path: &Path, json: &[u8]) -> Result
     })
 }
 
-/// Whether `name` is understood or of no consequence.
-pub fn is_known(name: &str) -> bool {
-    KNOWN_EXTENSIONS.contains(&name)
+/// Whether the extension `name` is understood.
+pub fn is_understood(name: &str) -> bool {
+    UNDERSTOOD.contains(&name)
 }

@@ -120,7 +120,7 @@ impl<'a, 'b> Walk<'a, 'b> {
         self.materials.remark(builder);
         let root = &file.root;
         ignored.note_many("animations", root.animations.len());
-        for name in root.extensions_used.iter().filter(|name| !container::is_known(name)) {
+        for name in root.extensions_used.iter().filter(|name| !container::is_understood(name)) {
             ignored.note(&format!("extension {name}"));
         }
         if let Some(sentence) = ignored.sentence() {

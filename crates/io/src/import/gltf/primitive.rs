@@ -69,10 +69,9 @@ pub fn read(
         Some(index) => Some(Accessor::new(file, index, &indices_place, &[Type::Scalar])?),
         None => None,
     };
-    let place = if indices.is_some() { &indices_place } else { place };
     let count = indices.as_ref().map_or(vertex_count, |indices| indices.count);
     if mode == Mode::Triangles && count % 3 != 0 {
-        return Err(file.error(place, format!("{count} corners make no whole number of triangles")));
+        return Err(file.error(&indices_place, format!("{count} corners make no whole number of triangles")));
     }
     let corner = |k: usize| indices.as_ref().map_or(k as u32, |indices| indices.get(k)[0] as u32);
     let mirrored = world.determinant() < 0.0;
