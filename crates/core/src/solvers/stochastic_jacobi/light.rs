@@ -72,6 +72,11 @@ impl Light {
         self.from_lamps(e) + self.direct[e as usize] + self.indirect[e as usize]
     }
 
+    /// Radiosity [lm/m²] that element `e` reflects.
+    pub fn reflected_radiosity(&self, mesh: &ElementMesh, e: u32) -> Rgb {
+        mesh.reflectivity(e) * self.on(e) / mesh.area(e)
+    }
+
     /// Flux [lm] that element `e` has yet to shoot.
     pub fn unshot(&self, e: u32) -> Rgb {
         self.unshot[e as usize]

@@ -9,6 +9,7 @@
 //! element's own noise would pull its estimate towards low values. Direct and indirect light are merged separately,
 //! for few lines meet an emitter and all meet a wall.
 
+use super::light::Light;
 use crate::Problem;
 use crate::math::Rgb;
 use crate::solvers::allocation::Allocation;
@@ -42,6 +43,25 @@ impl Variances {
 }
 
 impl Merging {
+    /// What to expect of an element of a scene so lit, whose emitted and reflected light was shot with so much flux [lm] a ray.
+    pub fn expect(problem: &Problem, light: &Light, emission_ray_flux: f64, reflected_ray_flux: f64) -> Merging {
+        let mesh = &problem.mesh;
+        // A line meets radiosity Be with probability E / Be: variance E Be, averaged over the emitted power.
+        let (mut power, mut power_exitance) = (0.0, 0.0);
+        for e in mesh.elements().filter(|&e| !mesh.emission(e).is_black()) {
+            let emitted = f64::from(mesh.emitted_flux(e).luminance());
+            power += emitted;
+            power_exitance += emitted * f64::from(mesh.emission(e).luminance());
+        }
+        let exitance = if power > 0.0 { power_exitance / power } else { 0.0 };
+        let (direct, indirect) = (mean_irradiance(problem, &light.direct), mean_irradiance(problem, &light.indirect));
+        let variance = radiosity_variance(problem, |e| light.reflected_radiosity(mesh, e));
+        Merging {
+            direct: Variances::new(direct, emission_ray_flux, direct * exitance),
+            indirect: Variances::new(indirect, reflected_ray_flux, variance),
+        }
+    }
+
     /// Weights of gathering for direct and indirect light.
     pub fn weights(&self, area: f32, n: u32) -> [f32; 2] {
         [self.direct.weight(area, n), self.indirect.weight(area, n)]
@@ -74,7 +94,7 @@ impl Merging {
 }
 
 /// Variance over the scene's area of the luminance of `radiosity(e)` [lux²].
-pub fn radiosity_variance(problem: &Problem, radiosity: impl Fn(u32) -> Rgb) -> f64 {
+fn radiosity_variance(problem: &Problem, radiosity: impl Fn(u32) -> Rgb) -> f64 {
     let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
     for e in problem.mesh.elements() {
         let (a, b) = (f64::from(problem.mesh.area(e)), f64::from(radiosity(e).luminance()));
@@ -86,7 +106,7 @@ pub fn radiosity_variance(problem: &Problem, radiosity: impl Fn(u32) -> Rgb) -> 
 }
 
 /// Area-weighted mean irradiance [lux, luminance] of a `flux` [lm] on every element.
-pub fn mean_irradiance(problem: &Problem, flux: &[Rgb]) -> f64 {
+fn mean_irradiance(problem: &Problem, flux: &[Rgb]) -> f64 {
     flux.iter().map(|f| f64::from(f.luminance())).sum::<f64>() / problem.mesh.total_area()
 }
 

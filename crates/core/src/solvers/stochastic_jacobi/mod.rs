@@ -8,9 +8,11 @@
 
 mod light;
 mod merging;
+mod plan;
 mod relaxation;
 
-use self::relaxation::{Experience, Relaxation, Stage};
+use self::plan::Experience;
+use self::relaxation::{Relaxation, Stage};
 use super::replicates::Replicates;
 use super::{Part, Progress, Solver, budget};
 use crate::math::Rgb;

@@ -1,7 +1,8 @@
 //! One complete solution: emission, incremental shooting, regular shooting, gathering.
 
 use super::light::{Light, Origin};
-use super::merging::{Merging, Variances, mean_irradiance, radiosity_variance};
+use super::merging::Merging;
+use super::plan::{Experience, Plan};
 use crate::Problem;
 use crate::math::Rgb;
 use crate::math::hash::{derive, unit_f64};
@@ -11,11 +12,6 @@ use crate::solution::Balance;
 use crate::solvers::allocation::Allocation;
 use crate::solvers::{Part, gathering, shooting};
 use std::ops::Range;
-
-/// Share of a replicate's rays that shoot; the others gather.
-const SHOOTING_SHARE: f64 = 0.6;
-/// Incremental shooting stops when less than this share of the emitted power is unshot.
-const UNSHOT_LIMIT: f64 = 1e-6;
 
 /// What the running step does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -30,13 +26,6 @@ pub enum Stage {
     Regular,
     Gathering,
     Done,
-}
-
-/// What one replicate teaches the next about where rays are best spent. It never touches an expected value.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Experience {
-    /// Reflected over emitted power.
-    pub reflected_share: f64,
 }
 
 /// The state of one complete solution.
@@ -76,7 +65,7 @@ impl Stage {
         }
     }
 
-    fn next(self) -> Stage {
+    pub fn next(self) -> Stage {
         match self {
             Stage::Lamps => Stage::Emission,
             Stage::Emission => Stage::Incremental,
@@ -84,17 +73,6 @@ impl Stage {
             Stage::Regular => Stage::Gathering,
             Stage::Gathering | Stage::Done => Stage::Done,
         }
-    }
-}
-
-impl Experience {
-    /// What to expect before anything is known: the closed room of mean reflectivity `rho` reflects `rho / (1 - rho)`
-    /// of what is emitted.
-    pub fn expected(problem: &Problem) -> Experience {
-        let mesh = &problem.mesh;
-        let weighted = |e| f64::from(mesh.area(e)) * f64::from(mesh.reflectivity(e).luminance());
-        let rho = (mesh.elements().map(weighted).sum::<f64>() / mesh.total_area()).clamp(0.0, 0.95);
-        Experience { reflected_share: rho / (1.0 - rho) }
     }
 }
 
@@ -200,11 +178,13 @@ impl Relaxation {
         let mut stage = stage;
         while stage != Stage::Done {
             self.shot = self.source_flux(problem, stage);
-            let rays = self.rays_of_step(stage, experience);
+            let plan = Plan { rays: self.rays_planned, reflected_share: experience.reflected_share };
+            let share = self.shot / self.balance.emitted.max(f64::MIN_POSITIVE);
+            let rays = plan.rays_of_step(stage, share, self.rays_done);
             let u = unit_f64(derive(self.seed, self.step));
             self.step += 1;
             if stage == Stage::Gathering {
-                self.merging = self.compare(problem);
+                self.merging = Merging::expect(problem, &self.light, self.emission_ray_flux, self.reflected_ray_flux());
                 self.allocation = self.merging.allocate(problem, rays, u);
             } else {
                 self.allocation = Allocation::systematic(self.sources(problem, stage), self.shot, rays, u);
@@ -219,30 +199,6 @@ impl Relaxation {
         self.pieces_absorbed = 0;
     }
 
-    /// Rays for a step of `stage`; zero if there is nothing to do.
-    ///
-    /// Emission and reflection share the shooting rays by their expected power, so that all rays carry about the same;
-    /// half of those for reflected light go to the incremental steps, half to the regular iteration.
-    fn rays_of_step(&self, stage: Stage, experience: &Experience) -> u64 {
-        let shooting = SHOOTING_SHARE * self.rays_planned as f64;
-        let reflected_share = experience.reflected_share;
-        let emission_rays = shooting / (1.0 + reflected_share);
-        let share = self.shot / self.balance.emitted.max(f64::MIN_POSITIVE);
-        let left = |rays: f64| (rays - self.rays_done as f64).max(0.0) as u64;
-        match stage {
-            Stage::Gathering if self.balance.emitted > 0.0 => left(self.rays_planned as f64),
-            _ if self.shot <= 0.0 => 0,
-            Stage::Lamps | Stage::Emission => (emission_rays * share).ceil() as u64,
-            Stage::Incremental if share < UNSHOT_LIMIT => 0,
-            Stage::Incremental => {
-                let reflected_rays = 0.5 * (shooting - emission_rays);
-                (reflected_rays * share / reflected_share.max(1e-3)).ceil().max(1.0) as u64
-            }
-            Stage::Regular => left(shooting),
-            Stage::Gathering | Stage::Done => 0,
-        }
-    }
-
     /// Traces one piece of the running step.
     pub fn part(&self, problem: &Problem, piece: u64) -> Part {
         let sequence = &OwenSobol::new(self.address.sequence_seed(self.seed, self.step));
@@ -251,7 +207,8 @@ impl Relaxation {
             let sweep = gathering::Sweep { problem, sequence, counters, allocation };
             return sweep.gather(piece, |i, n, j| {
                 let [direct, indirect] = self.merging.weights(problem.mesh.area(i), n);
-                (problem.mesh.emission(j) * direct + self.reflected_radiosity(problem, j) * indirect) / n as f32
+                (problem.mesh.emission(j) * direct + self.light.reflected_radiosity(&problem.mesh, j) * indirect)
+                    / n as f32
             });
         }
         let sweep = shooting::Sweep { problem, sequence, counters, allocation, total: self.shot };
@@ -308,30 +265,9 @@ impl Relaxation {
         self.balance.unshot = self.light.unshot_total() + still_to_emit;
     }
 
-    /// Radiosity [lm/m²] that element `e` reflects.
-    fn reflected_radiosity(&self, problem: &Problem, e: u32) -> Rgb {
-        problem.mesh.reflectivity(e) * self.light.on(e) / problem.mesh.area(e)
-    }
-
-    /// The variances of shooting and gathering that this complete solution leads to expect.
-    fn compare(&self, problem: &Problem) -> Merging {
-        let mesh = &problem.mesh;
-        // A line meets radiosity Be with probability E / Be: variance E Be, averaged over the emitted power.
-        let (mut power, mut power_exitance) = (0.0, 0.0);
-        for e in mesh.elements().filter(|&e| !mesh.emission(e).is_black()) {
-            let emitted = f64::from(mesh.emitted_flux(e).luminance());
-            power += emitted;
-            power_exitance += emitted * f64::from(mesh.emission(e).luminance());
-        }
-        let direct = mean_irradiance(problem, &self.light.direct);
-        let exitance = if power > 0.0 { power_exitance / power } else { 0.0 };
-        let indirect = mean_irradiance(problem, &self.light.indirect);
-        let indirect_ray_flux = self.reflected / self.reflected_rays.max(1) as f64;
-        let variance = radiosity_variance(problem, |e| self.reflected_radiosity(problem, e));
-        Merging {
-            direct: Variances::new(direct, self.emission_ray_flux, direct * exitance),
-            indirect: Variances::new(indirect, indirect_ray_flux, variance),
-        }
+    /// Flux [lm] of the rays that carried reflected light, were it spread evenly over them.
+    fn reflected_ray_flux(&self) -> f64 {
+        self.reflected / self.reflected_rays.max(1) as f64
     }
 
     /// Irradiance [lux] of every element of a finished complete solution, gathered light merged in.
