@@ -63,13 +63,13 @@ impl Light {
     }
 
     /// Flux [lm] on element `e` straight from lights without extent.
-    pub fn from_lamps(&self, e: u32) -> Rgb {
+    pub fn lamp_flux(&self, e: u32) -> Rgb {
         self.lamps.get(e as usize).copied().unwrap_or_default()
     }
 
     /// All flux [lm] on element `e`.
     pub fn on(&self, e: u32) -> Rgb {
-        self.from_lamps(e) + self.direct[e as usize] + self.indirect[e as usize]
+        self.lamp_flux(e) + self.direct[e as usize] + self.indirect[e as usize]
     }
 
     /// Radiosity [lm/m²] that element `e` reflects.

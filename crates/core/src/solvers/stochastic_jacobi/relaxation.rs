@@ -281,7 +281,7 @@ impl Relaxation {
             };
             let k = e as usize;
             let (shot_direct, shot_indirect) = (self.light.direct[k], self.light.indirect[k]);
-            let shot = self.light.from_lamps(e) + shot_direct * (1.0 - direct) + shot_indirect * (1.0 - indirect);
+            let shot = self.light.lamp_flux(e) + shot_direct * (1.0 - direct) + shot_indirect * (1.0 - indirect);
             shot / area + self.light.landed(e)
         })
     }
