@@ -1,1 +1,47 @@
-//! What a camera sees of a solution.
+//! What people look at: the light interpolated over the surface, and a picture of it.
+//!
+//! ```text
+//! Solution --vertex_field--> VertexField --picture--> Picture (cd/m², and tone-mapped for a screen)
+//!    weld, crease: which element corners are one vertex        camera_rays, default_view: where from
+//!    cover, smooth, seams: what its value is                   surface_light, tone: what is seen there
+//! ```
+
+pub mod camera_rays;
+mod cover;
+mod crease;
+mod default_view;
+mod grid;
+pub mod picture;
+mod plastic;
+mod seams;
+mod smooth;
+pub mod surface_light;
+pub mod tone;
+pub mod vertex_field;
+mod vertices;
+mod weld;
+
+pub use picture::{Picture, ViewOptions, render};
+pub use tone::Exposure;
+pub use vertex_field::VertexField;
+
+#[cfg(test)]
+mod tests {
+    use crate::Solution;
+    use crate::math::Rgb;
+    use crate::solution::{Balance, Provenance, Work};
+
+    /// A solution with the given irradiance [lux] per element and no known error.
+    pub fn solution(irradiance: Vec<Rgb>) -> Solution {
+        let provenance = Provenance {
+            scene: String::new(),
+            scene_hash: 0,
+            method: "made up".to_owned(),
+            parameters: Vec::new(),
+            seed: 0,
+            version: crate::VERSION.to_owned(),
+        };
+        let std_error = vec![Rgb::grey(f32::NAN); irradiance.len()];
+        Solution { irradiance, std_error, work: Work::default(), balance: Balance::default(), provenance }
+    }
+}

@@ -1,0 +1,114 @@
+//! The vertices of the lit surface: grid points that are the same place on the same smooth surface, made one.
+
+use super::crease;
+use super::grid::{self, Grid};
+use super::weld::Weld;
+use crate::Problem;
+use glam::Vec3;
+
+/// Points closer than this share of the scene's radius are one: some ten times the rounding of a coordinate.
+pub const WELD_TOLERANCE: f32 = 4e-6;
+
+/// Which grid points share a vertex, and which elements touch it. Edges between walls keep a vertex for each wall,
+/// smooth surfaces share theirs, whatever objects and materials they belong to.
+#[derive(Clone, Debug)]
+pub struct Vertices {
+    pub grid: Grid,
+    /// Vertex of every grid point.
+    of_grid_point: Vec<u32>,
+    /// Position [m] of every vertex.
+    positions: Vec<Vec3>,
+    /// Elements that touch vertex v: `touching[first[v]..first[v + 1]]`.
+    first: Vec<usize>,
+    touching: Vec<u32>,
+}
+
+impl Vertices {
+    pub fn new(problem: &Problem) -> Vertices {
+        let mesh = &problem.mesh;
+        let grid = Grid::new(mesh, problem.scene.triangles.len() as u32);
+        let (places, normals, positions) = places(problem, &grid);
+        let (of_grid_point, positions) = split_at_creases(&places, &normals, &positions);
+        let of_element = |e: u32| grid.corners_of_element(mesh, e).map(|g| of_grid_point[g]);
+        let (first, touching) = group_by(positions.len(), 3 * mesh.len(), |k| of_element(k as u32 / 3)[k % 3]);
+        let touching = touching.into_iter().map(|k| (k / 3) as u32).collect();
+        Vertices { grid, of_grid_point, positions, first, touching }
+    }
+
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Position [m] of vertex `v`.
+    pub fn position(&self, v: u32) -> Vec3 {
+        self.positions[v as usize]
+    }
+
+    /// Vertex of a grid point.
+    pub fn of_grid_point(&self, number: usize) -> u32 {
+        self.of_grid_point[number]
+    }
+
+    /// Vertices at the corners of element `e`, in the orientation of the triangle's front.
+    pub fn of_element(&self, problem: &Problem, e: u32) -> [u32; 3] {
+        self.grid.corners_of_element(&problem.mesh, e).map(|g| self.of_grid_point[g])
+    }
+
+    /// Elements that touch vertex `v`.
+    pub fn touching(&self, v: u32) -> &[u32] {
+        &self.touching[self.first[v as usize]..self.first[v as usize + 1]]
+    }
+}
+
+/// Place (welded position) and normal of every grid point, and the positions [m] of the places.
+fn places(problem: &Problem, grid: &Grid) -> (Vec<u32>, Vec<Vec3>, Vec<Vec3>) {
+    let radius = problem.geometry.bounding_sphere().1;
+    let mut weld = Weld::new((WELD_TOLERANCE * radius).max(f32::MIN_POSITIVE));
+    let mut places = Vec::with_capacity(grid.len());
+    let mut normals = Vec::with_capacity(grid.len());
+    for side in grid.sides(&problem.mesh) {
+        let m = problem.mesh.divisions(side.triangle);
+        for point in grid::points(m) {
+            let (position, normal) = problem.geometry.surface(side.triangle, grid::barycentric(point, m));
+            places.push(weld.number(position));
+            normals.push(if side.back { -normal } else { normal });
+        }
+    }
+    (places, normals, weld.into_positions())
+}
+
+/// One vertex for every smooth group at every place: the vertex of every grid point, and the positions of the vertices.
+fn split_at_creases(places: &[u32], normals: &[Vec3], positions: &[Vec3]) -> (Vec<u32>, Vec<Vec3>) {
+    let (first, members) = group_by(positions.len(), places.len(), |g| places[g]);
+    let mut vertex = vec![0; places.len()];
+    let mut vertex_positions = Vec::new();
+    for (place, position) in positions.iter().enumerate() {
+        let members = &members[first[place]..first[place + 1]];
+        let here: Vec<Vec3> = members.iter().map(|&g| normals[g]).collect();
+        let groups = crease::groups(&here);
+        let base = vertex_positions.len() as u32;
+        for (&g, group) in members.iter().zip(&groups) {
+            vertex[g] = base + group;
+        }
+        let count = groups.iter().max().map_or(0, |last| last + 1);
+        vertex_positions.extend((0..count).map(|_| *position));
+    }
+    (vertex, vertex_positions)
+}
+
+/// Sorts the items 0..`items` by `key` below `keys` (a counting sort): those of key k are `sorted[first[k]..first[k + 1]]`.
+pub(super) fn group_by(keys: usize, items: usize, key: impl Fn(usize) -> u32) -> (Vec<usize>, Vec<usize>) {
+    let mut first = vec![0; keys + 1];
+    (0..items).for_each(|item| first[key(item) as usize + 1] += 1);
+    for k in 0..keys {
+        first[k + 1] += first[k];
+    }
+    let mut next = first.clone();
+    let mut sorted = vec![0; items];
+    for item in 0..items {
+        let slot = &mut next[key(item) as usize];
+        sorted[*slot] = item;
+        *slot += 1;
+    }
+    (first, sorted)
+}
