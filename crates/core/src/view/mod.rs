@@ -21,7 +21,7 @@ pub mod vertex_field;
 mod vertices;
 mod weld;
 
-pub use picture::{Picture, ViewOptions, render};
+pub use picture::{Picture, ViewOptions, exposure, render, render_field};
 pub use tone::Exposure;
 pub use vertex_field::VertexField;
 

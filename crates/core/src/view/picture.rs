@@ -66,24 +66,27 @@ const RUN: usize = 64;
 /// [`Error::UnknownName`] for a camera that is not there; [`Error::Parameter`] for a picture without pixels or rays, or
 /// with more than 2^28 pixels or 2^16 rays a pixel.
 pub fn render(problem: &Problem, solution: &Solution, options: &ViewOptions) -> Result<Picture, Error> {
-    let camera = match camera_rays::find(&problem.scene, options.camera.as_deref())? {
-        Some(camera) => camera.clone(),
-        None => default_view::camera(problem),
-    };
-    let width = options.width;
-    let height = options.height.unwrap_or_else(|| {
-        let aspect = camera.aspect.filter(|a| a.is_finite() && *a > 0.0).unwrap_or(4.0 / 3.0);
-        ((width as f32 / aspect).round() as u32).max(1)
-    });
-    check("width", width, width > 0 && u64::from(width) * u64::from(height) <= MOST_PIXELS, "1 to 2^28 pixels in all")?;
-    check("height", height, height > 0, "at least one pixel")?;
-    check("samples", options.samples, (1..=MOST_SAMPLES).contains(&options.samples), "1 to 65536 rays a pixel")?;
+    render_field(problem, &VertexField::new(problem, solution), options)
+}
 
-    let field = VertexField::new(problem, solution);
-    let view = View { problem, field: &field, rays: CameraRays::new(&camera, width, height), width, height };
+/// Takes a picture of a field: several pictures need to make it once only.
+///
+/// # Errors
+/// Those of [`render`].
+pub fn render_field(problem: &Problem, field: &VertexField, options: &ViewOptions) -> Result<Picture, Error> {
+    let view = View::new(problem, field, options)?;
     let exposure = options.exposure.unwrap_or_else(|| view.meter());
     let (luminance, display) = view.pixels(options.samples, exposure).into_iter().unzip();
-    Ok(Picture { width, height, luminance, display, exposure })
+    Ok(Picture { width: view.width, height: view.height, luminance, display, exposure })
+}
+
+/// The exposure that [`render`] would choose for the camera in `options`: for whatever else shall look like the picture.
+///
+/// # Errors
+/// Those of [`render`].
+pub fn exposure(problem: &Problem, field: &VertexField, options: &ViewOptions) -> Result<Exposure, Error> {
+    let view = View::new(problem, field, options)?;
+    Ok(options.exposure.unwrap_or_else(|| view.meter()))
 }
 
 fn check(name: &'static str, value: u32, fine: bool, allowed: &'static str) -> Result<(), Error> {
@@ -98,7 +101,24 @@ struct View<'a> {
     height: u32,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    fn new(problem: &'a Problem, field: &'a VertexField, options: &ViewOptions) -> Result<View<'a>, Error> {
+        let camera = match camera_rays::find(&problem.scene, options.camera.as_deref())? {
+            Some(camera) => camera.clone(),
+            None => default_view::camera(problem),
+        };
+        let width = options.width;
+        let height = options.height.unwrap_or_else(|| {
+            let aspect = camera.aspect.filter(|a| a.is_finite() && *a > 0.0).unwrap_or(4.0 / 3.0);
+            ((width as f32 / aspect).round() as u32).max(1)
+        });
+        let pixels = u64::from(width) * u64::from(height);
+        check("width", width, width > 0 && pixels <= MOST_PIXELS, "1 to 2^28 pixels in all")?;
+        check("height", height, height > 0, "at least one pixel")?;
+        check("samples", options.samples, (1..=MOST_SAMPLES).contains(&options.samples), "1 to 65536 rays a pixel")?;
+        Ok(View { problem, field, rays: CameraRays::new(&camera, width, height), width, height })
+    }
+
     /// Luminance and display colour of every pixel.
     fn pixels(&self, samples: u32, exposure: Exposure) -> Vec<(Rgb, Rgb)> {
         let mut pixels = vec![(Rgb::BLACK, Rgb::BLACK); (self.width * self.height) as usize];

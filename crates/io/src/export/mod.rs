@@ -2,6 +2,7 @@
 
 mod csv;
 mod elements;
+mod glb;
 pub mod glb_container;
 pub mod image;
 pub mod json;
