@@ -2,11 +2,10 @@
 
 use super::camera_rays::{self, CameraRays};
 use super::surface_light::{Seen, seen};
-use super::{Exposure, VertexField, default_view, plastic, tone};
+use super::{Exposure, VertexField, default_view, tone};
 use crate::geometry::{Hit, Ray};
 use crate::math::Rgb;
 use crate::{Error, Problem, Solution};
-use glam::Vec2;
 use rayon::prelude::*;
 
 /// What picture to take.
@@ -124,7 +123,7 @@ impl<'a> View<'a> {
         let mut pixels = vec![(Rgb::BLACK, Rgb::BLACK); (self.width * self.height) as usize];
         pixels.par_chunks_mut(RUN).enumerate().for_each(|(chunk, run)| {
             let first = (chunk * RUN) as u32;
-            let one = |p: u32| (0..samples).map(move |k| self.rays.ray_in_pixel(p, self.width, k));
+            let one = |p: u32| (0..samples).map(move |k| self.rays.ray_in_pixel(p, self.width, k, samples));
             let rays = (first..first + run.len() as u32).flat_map(one).collect();
             let seen = self.look(rays);
             for (pixel, seen) in run.iter_mut().zip(seen.chunks(samples as usize)) {
@@ -178,13 +177,15 @@ impl<'a> View<'a> {
 }
 
 impl CameraRays {
-    /// Ray `k` of pixel number `pixel`. Its rays are spread by a tent filter two pixels wide (filter importance sampling,
-    /// Ernst et al. 2006): denser in the middle, so all of them count alike.
-    fn ray_in_pixel(&self, pixel: u32, width: u32, k: u32) -> Ray {
-        let offset = plastic::point(pixel, k);
+    /// Ray `k` of `samples` through pixel number `pixel`. The rays are spread by a tent filter two pixels wide (filter
+    /// importance sampling, Ernst et al. 2006): denser in the middle, so all of them count alike. All pixels have the same
+    /// pattern, the Hammersley points: an edge that crosses them is then as even as it is long.
+    fn ray_in_pixel(&self, pixel: u32, width: u32, k: u32, samples: u32) -> Ray {
         let tent = |u: f32| if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
-        let center = Vec2::new((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5);
-        self.ray(center.x + tent(offset.x), center.y + tent(offset.y))
+        let across = (k as f32 + 0.5) / samples as f32;
+        let down = k.reverse_bits() as f32 / 2f32.powi(32) + 0.5 / samples as f32;
+        let (x, y) = (pixel % width, pixel / width);
+        self.ray(x as f32 + 0.5 + tent(across), y as f32 + 0.5 + tent(down.min(1.0)))
     }
 }
 
