@@ -22,6 +22,7 @@ mod vertices;
 mod weld;
 
 pub use picture::{Picture, ViewOptions, exposure, render, render_field};
+pub use seams::EdgePoints;
 pub use tone::Exposure;
 pub use vertex_field::VertexField;
 

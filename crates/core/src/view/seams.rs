@@ -1,13 +1,13 @@
-//! No seam where triangles with different divisions meet: the finer side follows the coarser one along their edge.
+//! No seam and no crack where triangles with different divisions meet.
 //!
-//! Values are interpolated linearly between the vertices along an edge. A vertex of one side that lies between two
-//! vertices of the other (a T-vertex) would bend the light on its own side only, which shows as a seam across a flat
-//! wall. So a T-vertex takes the value that the longer piece of edge has where it lies.
+//! A T-vertex of one side lies between two vertices of the other. Values are interpolated linearly between vertices, so it
+//! would bend the light along the edge on its own side only, which shows as a seam across a flat wall. So it takes the
+//! value that the longer piece of edge has where it lies ([`t_vertices`]). And a program that draws triangles leaves pinholes
+//! along such an edge, whatever the angle, unless both sides have the same vertices there ([`EdgePoints`]).
 
 use super::crease::CREASE_ANGLE;
-use super::grid;
+use super::grid::{self, Side};
 use super::vertices::{Vertices, WELD_TOLERANCE, group_by};
-
 use crate::Problem;
 use glam::{IVec3, Vec3};
 
@@ -20,7 +20,62 @@ pub struct TVertex {
     pub t: f32,
 }
 
-/// A piece of a triangle's edge, from vertex to vertex, that no other side shares.
+/// All T-vertices on smooth surfaces, in an order in which every one comes after those it depends on.
+pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
+    let sides = vertices.grid.sides(&problem.mesh);
+    let pieces = loose_pieces(problem, vertices, sides, |vertex| vertex);
+    let mut found: Vec<(f32, TVertex)> = Vec::new();
+    visit_crossings(
+        problem,
+        &pieces,
+        |v| vertices.position(v),
+        |piece, end, t| {
+            // Strictly longer than any piece at the vertex: so what a vertex depends on hangs on a longer piece yet, and
+            // going from long to short settles all of them.
+            if piece.length > 1.001 * end.longest && end.normal.dot(piece.normal) > CREASE_ANGLE.cos() {
+                found.push((piece.length, TVertex { vertex: end.key, from: piece.from, to: piece.to, t }));
+            }
+        },
+    );
+    found.sort_by(|(long, x), (longer, y)| longer.total_cmp(long).then((x.vertex, x.from).cmp(&(y.vertex, y.from))));
+    let mut taken = vec![false; vertices.len()];
+    found.retain(|(_, t)| !std::mem::replace(&mut taken[t.vertex as usize], true));
+    found.into_iter().map(|(_, t)| t).collect()
+}
+
+/// The places that lie on an edge of an element between its ends.
+#[derive(Clone, Debug)]
+pub struct EdgePoints {
+    /// (from, to, t, place), sorted; `from < to` are places as well.
+    points: Vec<(u32, u32, f32, u32)>,
+}
+
+impl EdgePoints {
+    pub fn new(problem: &Problem, vertices: &Vertices) -> EdgePoints {
+        let fronts = vertices.grid.sides(&problem.mesh).filter(|side| !side.back);
+        let pieces = loose_pieces(problem, vertices, fronts, |vertex| vertices.place(vertex));
+        let mut points = Vec::new();
+        let position = |place: u32| vertices.positions()[place as usize];
+        visit_crossings(problem, &pieces, position, |piece, end, t| points.push((piece.from, piece.to, t, end.key)));
+        points.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)).then(a.3.cmp(&b.3)));
+        points.dedup_by_key(|p| (p.0, p.1, p.3));
+        EdgePoints { points }
+    }
+
+    /// Points on the edge between places `a` and `b`, in the order from `a` to `b`: share of the way, and place.
+    pub fn between(&self, a: u32, b: u32) -> Vec<(f32, u32)> {
+        let edge = (a.min(b), a.max(b));
+        let first = self.points.partition_point(|p| (p.0, p.1) < edge);
+        let on_edge = self.points[first..].iter().take_while(|p| (p.0, p.1) == edge);
+        let mut points: Vec<(f32, u32)> = on_edge.map(|p| (if a < b { p.2 } else { 1.0 - p.2 }, p.3)).collect();
+        if a > b {
+            points.reverse();
+        }
+        points
+    }
+}
+
+/// A piece of a triangle's edge that no other side shares, between two keys: vertices or places.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     from: u32,
@@ -29,71 +84,70 @@ struct Piece {
     length: f32,
 }
 
-/// All T-vertices, in an order in which every one comes after those it depends on.
-pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
-    let pieces = loose_pieces(problem, vertices);
-    let ends = ends(&pieces);
-    let tolerance = 4.0 * WELD_TOLERANCE * problem.geometry.bounding_sphere().1;
-    let buckets = Buckets::new(vertices, &ends, &pieces);
-    let mut found: Vec<(f32, TVertex)> = Vec::new();
-    for piece in &pieces {
-        let (a, b) = (vertices.position(piece.from), vertices.position(piece.to));
-        buckets.near_segment(a, b, tolerance, |end| {
-            // Strictly longer than any piece at the vertex: so what a vertex depends on hangs on a longer piece yet, and
-            // going from long to short settles all of them.
-            let smooth = end.normal.dot(piece.normal) > CREASE_ANGLE.cos();
-            if piece.length > 1.001 * end.longest && smooth && end.vertex != piece.from && end.vertex != piece.to {
-                let t = (vertices.position(end.vertex) - a).dot(b - a) / (piece.length * piece.length);
-                let off = (a + t * (b - a)).distance(vertices.position(end.vertex));
-                if off <= tolerance && t > 0.0 && t < 1.0 {
-                    found.push((piece.length, TVertex { vertex: end.vertex, from: piece.from, to: piece.to, t }));
-                }
-            }
-        });
-    }
-    found.sort_by(|(long, x), (longer, y)| {
-        longer.total_cmp(long).then(x.vertex.cmp(&y.vertex)).then(x.from.cmp(&y.from))
-    });
-    let mut taken = vec![false; vertices.len()];
-    found.retain(|(_, t)| !std::mem::replace(&mut taken[t.vertex as usize], true));
-    found.into_iter().map(|(_, t)| t).collect()
-}
-
-/// Pieces of edges that belong to one side only: borders, creases, and edges between different divisions.
-fn loose_pieces(problem: &Problem, vertices: &Vertices) -> Vec<Piece> {
-    let mesh = &problem.mesh;
-    let mut pieces = Vec::new();
-    for side in vertices.grid.sides(mesh) {
-        let m = mesh.divisions(side.triangle);
-        for ends in grid::border(m) {
-            let [from, to] = ends.map(|ij| vertices.of_grid_point(vertices.grid.number(mesh, side, ij)));
-            let length = vertices.position(from).distance(vertices.position(to));
-            let front = problem.geometry.surface(side.triangle, grid::barycentric(ends[0], m)).1;
-            let normal = if side.back { -front } else { front };
-            pieces.push(Piece { from: from.min(to), to: from.max(to), normal, length });
-        }
-    }
-    pieces.sort_by_key(|piece| (piece.from, piece.to));
-    let shared = |pair: &[Piece]| pair.len() > 1 || pair[0].from == pair[0].to;
-    let same = |a: &Piece, b: &Piece| (a.from, a.to) == (b.from, b.to);
-    pieces.chunk_by(same).filter(|chunk| !shared(chunk)).map(|chunk| chunk[0]).collect()
-}
-
-/// A vertex where loose pieces end.
+/// A vertex or place where loose pieces end.
 #[derive(Clone, Copy, Debug)]
 struct End {
-    vertex: u32,
+    key: u32,
     normal: Vec3,
     /// Length of the longest loose piece that ends here [m].
     longest: f32,
 }
 
+/// Pieces of edges that belong to one side only: borders, creases, and edges between different divisions.
+fn loose_pieces(
+    problem: &Problem,
+    vertices: &Vertices,
+    sides: impl Iterator<Item = Side>,
+    key: impl Fn(u32) -> u32,
+) -> Vec<Piece> {
+    let mesh = &problem.mesh;
+    let mut pieces = Vec::new();
+    for side in sides {
+        let m = mesh.divisions(side.triangle);
+        for ends in grid::border(m) {
+            let [a, b] = ends.map(|ij| vertices.of_grid_point(vertices.grid.number(mesh, side, ij)));
+            let length = vertices.position(a).distance(vertices.position(b));
+            let front = problem.geometry.surface(side.triangle, grid::barycentric(ends[0], m)).1;
+            let normal = if side.back { -front } else { front };
+            pieces.push(Piece { from: key(a).min(key(b)), to: key(a).max(key(b)), normal, length });
+        }
+    }
+    pieces.sort_by_key(|piece| (piece.from, piece.to));
+    let same = |a: &Piece, b: &Piece| (a.from, a.to) == (b.from, b.to);
+    let loose = |chunk: &&[Piece]| chunk.len() == 1 && chunk[0].from != chunk[0].to;
+    pieces.chunk_by(same).filter(loose).map(|chunk| chunk[0]).collect()
+}
+
 fn ends(pieces: &[Piece]) -> Vec<End> {
-    let both = |p: &Piece| [p.from, p.to].map(|vertex| End { vertex, normal: p.normal, longest: p.length });
+    let both = |p: &Piece| [p.from, p.to].map(|key| End { key, normal: p.normal, longest: p.length });
     let mut ends: Vec<End> = pieces.iter().flat_map(both).collect();
-    ends.sort_by(|a, b| a.vertex.cmp(&b.vertex).then(b.longest.total_cmp(&a.longest)));
-    ends.dedup_by_key(|end| end.vertex);
+    ends.sort_by(|a, b| a.key.cmp(&b.key).then(b.longest.total_cmp(&a.longest)));
+    ends.dedup_by_key(|end| end.key);
     ends
+}
+
+/// Calls `visit` for every end that lies on a piece between the piece's own ends, at `from + t (to - from)`; for some of them
+/// more than once.
+fn visit_crossings(
+    problem: &Problem,
+    pieces: &[Piece],
+    position: impl Fn(u32) -> Vec3,
+    mut visit: impl FnMut(&Piece, &End, f32),
+) {
+    let tolerance = 4.0 * WELD_TOLERANCE * problem.geometry.bounding_sphere().1;
+    let ends = ends(pieces);
+    let buckets = Buckets::new(&position, &ends, pieces);
+    for piece in pieces {
+        let (a, b) = (position(piece.from), position(piece.to));
+        buckets.near_segment(a, b, tolerance, |end| {
+            let p = position(end.key);
+            let t = (p - a).dot(b - a) / (piece.length * piece.length);
+            let between = end.key != piece.from && end.key != piece.to && t > 0.0 && t < 1.0;
+            if between && p.distance(a + t * (b - a)) <= tolerance {
+                visit(piece, end, t);
+            }
+        });
+    }
 }
 
 /// The ends of pieces in a hashed grid of cells.
@@ -106,11 +160,11 @@ struct Buckets<'a> {
 
 impl<'a> Buckets<'a> {
     /// Cells about as large as a typical piece, so that a piece crosses few of them.
-    fn new(vertices: &Vertices, ends: &'a [End], pieces: &[Piece]) -> Buckets<'a> {
+    fn new(position: impl Fn(u32) -> Vec3, ends: &'a [End], pieces: &[Piece]) -> Buckets<'a> {
         let mean = pieces.iter().map(|p| f64::from(p.length)).sum::<f64>() / pieces.len().max(1) as f64;
         let cell = (mean as f32).max(f32::MIN_POSITIVE);
         let count = ends.len().next_power_of_two();
-        let key = |k: usize| bucket(cell_of(vertices.position(ends[k].vertex), cell), count);
+        let key = |k: usize| bucket(cell_of(position(ends[k].key), cell), count);
         let (first, sorted) = group_by(count, ends.len(), key);
         Buckets { ends, cell, first, sorted }
     }

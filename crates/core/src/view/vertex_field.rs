@@ -8,6 +8,7 @@
 //! error bar as well, and would be believed too much.
 
 use super::grid::{self, Side};
+use super::seams::EdgePoints;
 use super::vertices::Vertices;
 use super::{cover, seams, smooth};
 use crate::math::Rgb;
@@ -75,6 +76,21 @@ impl VertexField {
     /// Irradiance [lux] at vertex `v`.
     pub fn irradiance(&self, v: u32) -> Rgb {
         self.irradiance[v as usize]
+    }
+
+    /// Where elements' edges have vertices of their neighbours on them; for programs that draw triangles.
+    pub fn edge_points(&self, problem: &Problem) -> EdgePoints {
+        EdgePoints::new(problem, &self.vertices)
+    }
+
+    /// Number of the place of vertex `v`: vertices on both sides of a sharp edge have the same.
+    pub fn place(&self, v: u32) -> u32 {
+        self.vertices.place(v)
+    }
+
+    /// World position [m] of a place.
+    pub fn position_of_place(&self, place: u32) -> Vec3 {
+        self.vertices.positions()[place as usize]
     }
 
     /// World position [m] of vertex `v`.

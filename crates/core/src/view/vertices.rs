@@ -16,8 +16,10 @@ pub struct Vertices {
     pub grid: Grid,
     /// Vertex of every grid point.
     of_grid_point: Vec<u32>,
-    /// Position [m] of every vertex.
+    /// Position [m] of every place.
     positions: Vec<Vec3>,
+    /// Place of every vertex; several vertices meet at the same place along an edge.
+    places: Vec<u32>,
     /// Elements that touch vertex v: `touching[first[v]..first[v + 1]]`.
     first: Vec<usize>,
     touching: Vec<u32>,
@@ -27,21 +29,31 @@ impl Vertices {
     pub fn new(problem: &Problem) -> Vertices {
         let mesh = &problem.mesh;
         let grid = Grid::new(mesh, problem.scene.triangles.len() as u32);
-        let (places, normals, positions) = places(problem, &grid);
-        let (of_grid_point, positions) = split_at_creases(&places, &normals, &positions);
+        let (place_of_grid_point, normals, positions) = places(problem, &grid);
+        let (of_grid_point, places) = split_at_creases(&place_of_grid_point, &normals, positions.len());
         let of_element = |e: u32| grid.corners_of_element(mesh, e).map(|g| of_grid_point[g]);
-        let (first, touching) = group_by(positions.len(), 3 * mesh.len(), |k| of_element(k as u32 / 3)[k % 3]);
+        let (first, touching) = group_by(places.len(), 3 * mesh.len(), |k| of_element(k as u32 / 3)[k % 3]);
         let touching = touching.into_iter().map(|k| (k / 3) as u32).collect();
-        Vertices { grid, of_grid_point, positions, first, touching }
+        Vertices { grid, of_grid_point, positions, places, first, touching }
     }
 
     pub fn len(&self) -> usize {
-        self.positions.len()
+        self.places.len()
+    }
+
+    /// Number of the place where vertex `v` is.
+    pub fn place(&self, v: u32) -> u32 {
+        self.places[v as usize]
     }
 
     /// Position [m] of vertex `v`.
     pub fn position(&self, v: u32) -> Vec3 {
-        self.positions[v as usize]
+        self.positions[self.place(v) as usize]
+    }
+
+    /// Positions [m] of the places.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
     }
 
     /// Vertex of a grid point.
@@ -77,23 +89,23 @@ fn places(problem: &Problem, grid: &Grid) -> (Vec<u32>, Vec<Vec3>, Vec<Vec3>) {
     (places, normals, weld.into_positions())
 }
 
-/// One vertex for every smooth group at every place: the vertex of every grid point, and the positions of the vertices.
-fn split_at_creases(places: &[u32], normals: &[Vec3], positions: &[Vec3]) -> (Vec<u32>, Vec<Vec3>) {
-    let (first, members) = group_by(positions.len(), places.len(), |g| places[g]);
+/// One vertex for every smooth group at every place: the vertex of every grid point, and the place of every vertex.
+fn split_at_creases(places: &[u32], normals: &[Vec3], place_count: usize) -> (Vec<u32>, Vec<u32>) {
+    let (first, members) = group_by(place_count, places.len(), |g| places[g]);
     let mut vertex = vec![0; places.len()];
-    let mut vertex_positions = Vec::new();
-    for (place, position) in positions.iter().enumerate() {
+    let mut place_of_vertex = Vec::new();
+    for place in 0..place_count {
         let members = &members[first[place]..first[place + 1]];
         let here: Vec<Vec3> = members.iter().map(|&g| normals[g]).collect();
         let groups = crease::groups(&here);
-        let base = vertex_positions.len() as u32;
+        let base = place_of_vertex.len() as u32;
         for (&g, group) in members.iter().zip(&groups) {
             vertex[g] = base + group;
         }
         let count = groups.iter().max().map_or(0, |last| last + 1);
-        vertex_positions.extend((0..count).map(|_| *position));
+        place_of_vertex.extend((0..count).map(|_| place as u32));
     }
-    (vertex, vertex_positions)
+    (vertex, place_of_vertex)
 }
 
 /// Sorts the items 0..`items` by `key` below `keys` (a counting sort): those of key k are `sorted[first[k]..first[k + 1]]`.

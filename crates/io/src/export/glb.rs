@@ -7,13 +7,13 @@
 
 use super::glb_container::GlbBuilder;
 use crate::Error;
-use glam::{Mat3, Quat, Vec2};
+use glam::{Mat3, Quat, Vec2, Vec3};
 use image::ImageEncoder;
 use isolux_core::Problem;
 use isolux_core::math::Rgb;
 use isolux_core::math::color::linear_to_srgb;
 use isolux_core::scene::{Camera, Image, Object, Projection, Texture, Wrap};
-use isolux_core::view::{Exposure, VertexField};
+use isolux_core::view::{EdgePoints, Exposure, VertexField};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::f32::consts::FRAC_1_PI;
@@ -23,7 +23,8 @@ use std::f32::consts::FRAC_1_PI;
 /// # Errors
 /// [`Error::Invalid`] for a scene too large for the format (4 GiB), or an image that cannot be encoded.
 pub fn write(problem: &Problem, field: &VertexField, exposure: Exposure) -> Result<Vec<u8>, Error> {
-    let mut writer = Writer { problem, field, exposure, glb: GlbBuilder::new(), images: HashMap::new() };
+    let edge_points = field.edge_points(problem);
+    let mut writer = Writer { problem, field, exposure, edge_points, glb: GlbBuilder::new(), images: HashMap::new() };
     writer.glb.set("asset", asset(exposure));
     writer.glb.use_extension("KHR_materials_unlit");
     let mut nodes = Vec::new();
@@ -71,6 +72,7 @@ struct Writer<'a> {
     problem: &'a Problem,
     field: &'a VertexField,
     exposure: Exposure,
+    edge_points: EdgePoints,
     glb: GlbBuilder,
     /// Embedded images by their number in the scene.
     images: HashMap<u32, EmbeddedImage>,
@@ -95,6 +97,12 @@ struct Skin {
     emits: bool,
 }
 
+/// Floats as a key: equal if all their bits are.
+type Bits<const N: usize> = [u32; N];
+
+/// The corners of an element by their weights.
+const CORNERS: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
+
 /// A mesh under construction.
 #[derive(Default)]
 struct Vertices {
@@ -102,7 +110,7 @@ struct Vertices {
     color: Vec<[u16; 4]>,
     irradiance: Vec<[f32; 3]>,
     uv: Vec<[f32; 2]>,
-    known: HashMap<(u32, [u32; 2], [u16; 4]), u32>,
+    known: HashMap<(Bits<3>, Bits<3>, Bits<2>, [u16; 4]), u32>,
 }
 
 impl Writer<'_> {
@@ -112,11 +120,11 @@ impl Writer<'_> {
         let mut vertices = Vertices::default();
         let mut indices = Vec::with_capacity(3 * elements.len());
         for &e in elements {
-            let mut face = self.face(e, skin, &mut vertices);
+            let first = indices.len();
+            self.add_faces(e, skin, &mut vertices, &mut indices);
             if self.problem.mesh.place(e).back {
-                face.swap(1, 2);
+                indices[first..].reverse();
             }
-            indices.extend(face);
         }
         let mut attributes = json!({
             "POSITION": self.glb.add_f32x3(&vertices.position),
@@ -132,24 +140,56 @@ impl Writer<'_> {
         Ok(self.glb.push("meshes", json!({ "name": object.name, "primitives": [primitive] })))
     }
 
-    /// Vertices of element `e`, in the orientation of its triangle.
-    fn face(&self, e: u32, skin: Option<Skin>, vertices: &mut Vertices) -> [u32; 3] {
+    /// Appends the triangles of element `e`, in the orientation of its front: one, or a fan about its centre if vertices of
+    /// its neighbours lie on its edges, so that no pinholes show there.
+    fn add_faces(&self, e: u32, skin: Option<Skin>, vertices: &mut Vertices, indices: &mut Vec<u32>) {
+        let shared = self.field.vertices_of(self.problem, e);
+        let place = shared.map(|v| self.field.place(v));
+        let mut outline = Vec::with_capacity(3);
+        for k in 0..3 {
+            let (from, to) = (CORNERS[k], CORNERS[(k + 1) % 3]);
+            outline.push((from, place[k]));
+            let between = self.edge_points.between(place[k], place[(k + 1) % 3]);
+            outline.extend(between.into_iter().map(|(t, place)| (from.lerp(to, t), place)));
+        }
+        let corner = |(weights, place): &(Vec3, u32)| (*weights, self.field.position_of_place(*place));
+        let mut add = |(weights, position)| self.add_vertex(e, shared, weights, position, skin, vertices);
+        let outline: Vec<(Vec3, Vec3)> = outline.iter().map(corner).collect();
+        let numbers: Vec<u32> = outline.iter().map(|point| add(*point)).collect();
+        if let [a, b, c] = numbers[..] {
+            indices.extend([a, b, c]);
+        } else {
+            let [a, b, c] = shared.map(|v| self.field.position(v));
+            let center = add((Vec3::splat(1.0 / 3.0), (a + b + c) / 3.0));
+            let next = numbers.iter().cycle().skip(1);
+            indices.extend(numbers.iter().zip(next).flat_map(|(&from, &to)| [from, to, center]));
+        }
+    }
+
+    /// The vertex at the given weights of the corners of element `e`.
+    fn add_vertex(
+        &self,
+        e: u32,
+        shared: [u32; 3],
+        weights: Vec3,
+        position: Vec3,
+        skin: Option<Skin>,
+        vertices: &mut Vertices,
+    ) -> u32 {
         let scene = &self.problem.scene;
         let triangle = self.problem.mesh.triangle(e);
-        let corners = scene.triangles[triangle as usize].vertices.map(|v| &scene.vertices[v as usize]);
         let material = scene.material_of(triangle);
-        let shared = self.field.vertices_of(self.problem, e);
-        let barycentric = self.problem.mesh.corners(e);
-        std::array::from_fn(|k| {
-            let weights = [1.0 - barycentric[k].x - barycentric[k].y, barycentric[k].x, barycentric[k].y];
-            let tint: Rgb = corners.iter().zip(weights).map(|(c, w)| c.color * w).sum();
-            let uv = skin.map_or(Vec2::ZERO, |skin| {
-                corners.iter().zip(weights).map(|(c, w)| w * if skin.emits { c.emission_uv } else { c.uv }).sum()
-            });
-            let irradiance = self.field.irradiance(shared[k]);
-            let color = self.color(material.reflectivity * tint * irradiance, material.emission, skin);
-            vertices.number(shared[k], self.field.position(shared[k]).to_array(), uv.to_array(), color, irradiance)
-        })
+        let on_element = |corners: [Vec2; 3]| corners.iter().zip(weights.to_array()).map(|(c, w)| *c * w).sum::<Vec2>();
+        let uv = on_element(self.problem.mesh.corners(e));
+        let corners = scene.triangles[triangle as usize].vertices.map(|v| &scene.vertices[v as usize]);
+        let of_triangle = [1.0 - uv.x - uv.y, uv.x, uv.y];
+        let tint: Rgb = corners.iter().zip(of_triangle).map(|(c, w)| c.color * w).sum();
+        let texture_uv = skin.map_or(Vec2::ZERO, |skin| {
+            corners.iter().zip(of_triangle).map(|(c, w)| w * if skin.emits { c.emission_uv } else { c.uv }).sum()
+        });
+        let irradiance: Rgb = shared.iter().zip(weights.to_array()).map(|(&v, w)| self.field.irradiance(v) * w).sum();
+        let color = self.color(material.reflectivity * tint * irradiance, material.emission, skin);
+        vertices.number(position.to_array(), irradiance.to_array(), texture_uv.to_array(), color)
     }
 
     /// `COLOR_0` for reflected and emitted light [lm/m²] before textures.
@@ -207,11 +247,12 @@ impl Writer<'_> {
 
 impl Vertices {
     /// Number of a vertex in the mesh: an earlier one, if all of it is the same.
-    fn number(&mut self, shared: u32, position: [f32; 3], uv: [f32; 2], color: [u16; 4], irradiance: Rgb) -> u32 {
-        *self.known.entry((shared, uv.map(f32::to_bits), color)).or_insert_with(|| {
+    fn number(&mut self, position: [f32; 3], irradiance: [f32; 3], uv: [f32; 2], color: [u16; 4]) -> u32 {
+        let key = (position.map(f32::to_bits), irradiance.map(f32::to_bits), uv.map(f32::to_bits), color);
+        *self.known.entry(key).or_insert_with(|| {
             self.position.push(position);
             self.color.push(color);
-            self.irradiance.push(irradiance.to_array());
+            self.irradiance.push(irradiance);
             self.uv.push(uv);
             self.position.len() as u32 - 1
         })
