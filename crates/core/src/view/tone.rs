@@ -2,7 +2,8 @@
 //!
 //! Exposure is given in stops `s`: luminance L [cd/m²] enters the curve as `x = L 2^s`. A camera set to EV100 renders
 //! `x = L / (1.2 * 2^EV100)` (ISO 12232, saturation based), so `EV100 = -s - 0.26`: a stop more is twice as bright. The
-//! curve is the ACES fit of Narkowicz (2015), which rolls highlights off like film and gives a little contrast to shadows.
+//! curve is Hable's (Filmic Tonemapping Operators, 2010), which rolls highlights off like film and, unlike the fits to ACES,
+//! leaves the light in the shadows to be seen.
 
 use crate::math::Rgb;
 use crate::math::color::linear_to_srgb;
@@ -16,10 +17,12 @@ pub struct Exposure {
 
 /// Where the metered luminance is put before the curve: 18 % grey is what a camera takes an average scene for.
 const MIDDLE_GREY: f32 = 0.18;
-/// The brightest of what is metered is put no higher than this before the curve; the curve takes it to 0.9.
-const BRIGHTEST: f32 = 2.0;
-/// Narkowicz's fit has the exposure of the ACES reference built in; his note gives this factor to take it out.
-const ACES_EXPOSURE: f32 = 0.6;
+/// The brightest of what is metered is put no higher than this before the curve; the curve takes it to 0.94.
+const BRIGHTEST: f32 = 3.0;
+/// Hable's curve darkens; with this factor before it middle grey stays middle grey.
+const CURVE_EXPOSURE: f32 = 3.0;
+/// What becomes white, after that factor: Hable's linear white point.
+const WHITE_POINT: f32 = 11.2;
 /// How far bright saturated colours keep their hue; the rest of the way each channel saturates by itself, as film does.
 const HUE_KEPT: f32 = 0.5;
 
@@ -58,12 +61,12 @@ impl Exposure {
 
 /// The filmic curve, linear in and out: each channel by itself mixed with the curve of the luminance alone, which keeps hue.
 fn filmic(x: Rgb) -> Rgb {
-    let by_channel = x.map(aces);
+    let by_channel = x.map(curve);
     let luminance = x.luminance();
     if luminance <= 0.0 {
         return by_channel.map(|v| v.clamp(0.0, 1.0));
     }
-    let target = aces(luminance);
+    let target = curve(luminance);
     let hue_kept = toward_white(x * (target / luminance), target);
     (by_channel * (1.0 - HUE_KEPT) + hue_kept * HUE_KEPT).map(|v| v.clamp(0.0, 1.0))
 }
@@ -78,10 +81,17 @@ fn toward_white(color: Rgb, y: f32) -> Rgb {
     Rgb::grey(y) + (color - Rgb::grey(y)) * keep
 }
 
-/// Narkowicz, ACES Filmic Tone Mapping Curve, 2015.
-fn aces(x: f32) -> f32 {
-    let x = (ACES_EXPOSURE * x).clamp(0.0, 1e4);
-    ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).min(1.0)
+/// Hable 2010, normalised to his white point.
+fn curve(x: f32) -> f32 {
+    // Shoulder strength, linear strength and angle, toe strength, numerator and denominator.
+    const A: f32 = 0.15;
+    const B: f32 = 0.50;
+    const C: f32 = 0.10;
+    const D: f32 = 0.20;
+    const E: f32 = 0.02;
+    const F: f32 = 0.30;
+    let hable = |x: f32| (x * (A * x + C * B) + D * E) / (x * (A * x + B) + D * F) - E / F;
+    (hable((CURVE_EXPOSURE * x).clamp(0.0, WHITE_POINT)) / hable(WHITE_POINT)).clamp(0.0, 1.0)
 }
 
 /// 8-bit sRGB of a linear display colour for the pixel (x, y), with half a step of ordered noise against banding

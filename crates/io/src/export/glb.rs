@@ -51,7 +51,7 @@ fn asset(exposure: Exposure) -> Value {
         "extras": { "isolux": {
             "exposure_stops": exposure.stops,
             "ev100": exposure.ev100(),
-            "COLOR_0": "radiosity / pi [cd/m^2] times 2^exposure_stops, filmic tone curve (ACES fit of Narkowicz 2015), linear; \
+            "COLOR_0": "radiosity / pi [cd/m^2] times 2^exposure_stops, filmic tone curve (Hable 2010), linear; \
                         divided by the texture's mean where there is a texture",
             "_IRRADIANCE": "irradiance [lux], linear Rec. 709; illuminance = 0.2126 r + 0.7152 g + 0.0722 b",
         } },
