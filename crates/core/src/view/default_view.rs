@@ -84,3 +84,40 @@ fn in_room(problem: &Problem, low: Vec3, size: Vec3) -> Camera {
     let position = best.map_or(target, |(_, position)| position);
     Camera::looking_at("default", position, target, INSIDE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+    use crate::mesh::Resolution;
+    use crate::scene::{Material, Object, Scene, Triangle, Vertex};
+
+    /// The inside or the outside of a cube of 3 m, without the first `open` faces; the first is that at z = 3.
+    fn view_of_cube(open: usize, inside: bool) -> Camera {
+        let corner = |k: u32| Vertex::at(Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32) * 3.0);
+        let faces = [[4, 6, 7, 5], [0, 1, 3, 2], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+        let halves = faces[open..].iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let facing = |[a, b, c]: [u32; 3]| if inside { [a, c, b] } else { [a, b, c] };
+        let triangle = |(source, v)| Triangle { vertices: facing(v), object: 0, source };
+        let scene = Scene {
+            vertices: (0..8).map(corner).collect(),
+            triangles: (0..).zip(halves).map(triangle).collect(),
+            objects: vec![Object { name: String::new(), material: 0 }],
+            materials: vec![Material::diffuse("", Rgb::grey(0.5))],
+            ..Scene::default()
+        };
+        camera(&Problem::new(scene, Resolution::Elements(12)).unwrap())
+    }
+
+    fn is_within(p: Vec3) -> bool {
+        p.cmpgt(Vec3::ZERO).all() && p.cmplt(Vec3::splat(3.0)).all()
+    }
+
+    #[test]
+    fn rooms_are_seen_from_within_boxes_through_their_opening_and_objects_from_outside() {
+        let (a, b) = (view_of_cube(0, true).position, view_of_cube(0, false).position);
+        assert_ne!(is_within(a), is_within(b), "{a} {b}");
+        let open = [view_of_cube(1, true), view_of_cube(1, false)];
+        assert!(open.iter().any(|c| c.position.z > 3.0 && c.forward.abs_diff_eq(Vec3::NEG_Z, 1e-5)), "{open:?}");
+    }
+}
