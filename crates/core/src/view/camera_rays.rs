@@ -52,14 +52,16 @@ impl CameraRays {
     }
 }
 
-/// The camera of `scene` called `name`; without a name the first one, or `None` if the scene has none.
+/// The camera of `scene` called `name`, or with that number, counted from 0; without a name the first one, or `None` if
+/// the scene has none.
 ///
 /// # Errors
 /// [`Error::UnknownName`] with the most similar name.
 pub fn find<'a>(scene: &'a Scene, name: Option<&str>) -> Result<Option<&'a Camera>, Error> {
     let Some(name) = name else { return Ok(scene.cameras.first()) };
-    let found = scene.cameras.iter().find(|camera| camera.name == name);
-    found.map(Some).ok_or_else(|| {
+    let named = scene.cameras.iter().find(|camera| camera.name == name);
+    let numbered = || name.parse().ok().and_then(|number: usize| scene.cameras.get(number));
+    named.or_else(numbered).map(Some).ok_or_else(|| {
         let common =
             |other: &str| other.chars().zip(name.chars()).take_while(|(a, b)| a.eq_ignore_ascii_case(b)).count();
         let nearest = scene.cameras.iter().map(|c| c.name.as_str()).max_by_key(|other| common(other));

@@ -11,9 +11,9 @@ use rayon::prelude::*;
 /// What picture to take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewOptions {
-    /// Name of a camera of the scene; without one the first, or a default view if the scene has no camera.
+    /// Name of a camera of the scene, or its number from 0; without one the first, or a default view if the scene has no camera.
     pub camera: Option<String>,
-    /// Width and height in pixels; without a height that of the camera's shape, or 3/4 of the width.
+    /// Width and height in pixels; without a height that of the camera's shape, or 16:9.
     pub width: u32,
     pub height: Option<u32>,
     /// Rays a pixel.
@@ -108,7 +108,7 @@ impl<'a> View<'a> {
         };
         let width = options.width;
         let height = options.height.unwrap_or_else(|| {
-            let aspect = camera.aspect.filter(|a| a.is_finite() && *a > 0.0).unwrap_or(4.0 / 3.0);
+            let aspect = camera.aspect.filter(|a| a.is_finite() && *a > 0.0).unwrap_or(16.0 / 9.0);
             ((width as f32 / aspect).round() as u32).max(1)
         });
         let pixels = u64::from(width) * u64::from(height);
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn a_furnace_looks_the_same_everywhere() {
         let picture = furnace(1.0, &small());
-        assert_eq!((picture.width, picture.height), (40, 30));
+        assert_eq!((picture.width, picture.height), (40, 23));
         let expected = std::f32::consts::FRAC_1_PI;
         assert!(picture.luminance.iter().all(|l| (l.g - expected).abs() < 1e-6 && l.r == l.g));
         assert!(picture.display.iter().all(|d| (d.g - picture.display[0].g).abs() < 1e-6));

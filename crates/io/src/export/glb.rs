@@ -352,7 +352,8 @@ mod tests {
         scene.objects.push(Object { name: "flag".into(), material: 0 });
         scene.vertices = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y].map(Vertex::at).to_vec();
         let halves = [[0, 1, 2], [0, 2, 3]];
-        scene.triangles = (0..).zip(halves).map(|(source, vertices)| Triangle { vertices, object: 0, source }).collect();
+        scene.triangles =
+            (0..).zip(halves).map(|(source, vertices)| Triangle { vertices, object: 0, source }).collect();
         scene.cameras.push(Camera::looking_at("eye", Vec3::Z, Vec3::ZERO, 1.0));
         let problem = Problem::with_divisions(scene, divisions).unwrap();
         let light = |e| Rgb::grey(light[usize::from(problem.mesh.place(e).back)]);
@@ -366,7 +367,8 @@ mod tests {
             version: String::new(),
         };
         let std_error = irradiance.clone();
-        let solution = Solution { irradiance, std_error, work: Work::default(), balance: Balance::default(), provenance };
+        let solution =
+            Solution { irradiance, std_error, work: Work::default(), balance: Balance::default(), provenance };
         write(&problem, &VertexField::new(&problem, &solution), Exposure { stops: -4.0 }).unwrap()
     }
 
