@@ -90,7 +90,8 @@ fn curve(x: f32) -> f32 {
     const D: f32 = 0.20;
     const E: f32 = 0.02;
     const F: f32 = 0.30;
-    let hable = |x: f32| (x * (A * x + C * B) + D * E) / (x * (A * x + B) + D * F) - E / F;
+    // His quotient less E / F, over one denominator: black is exactly black.
+    let hable = |x: f32| x * (A * (F - E) * x + B * (C * F - E)) / (F * (x * (A * x + B) + D * F));
     (hable((CURVE_EXPOSURE * x).clamp(0.0, WHITE_POINT)) / hable(WHITE_POINT)).clamp(0.0, 1.0)
 }
 

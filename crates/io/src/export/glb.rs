@@ -6,24 +6,32 @@
 //! of things. The
 //! numbers themselves are in the attribute `_IRRADIANCE` [lux], linear Rec. 709; `asset.extras` says so in the file.
 
+use super::ExportOptions;
 use super::glb_container::GlbBuilder;
+use super::image::encode_png;
+use super::picture::view_options;
 use crate::Error;
 use glam::{Mat3, Quat, Vec2, Vec3};
-use image::ImageEncoder;
-use isolux_core::Problem;
 use isolux_core::math::Rgb;
 use isolux_core::math::color::linear_to_srgb;
 use isolux_core::scene::{Camera, Image, Object, Projection, Texture, Wrap};
-use isolux_core::view::{EdgePoints, Exposure, VertexField};
+use isolux_core::view::{self, EdgePoints, Exposure, VertexField};
+use isolux_core::{Problem, Solution};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::f32::consts::FRAC_1_PI;
 
-/// The file's bytes.
+/// The file's bytes, exposed as the picture that `options` ask for.
 ///
 /// # Errors
-/// [`Error::Invalid`] for a scene too large for the format (4 GiB), or an image that cannot be encoded.
-pub fn write(problem: &Problem, field: &VertexField, exposure: Exposure) -> Result<Vec<u8>, Error> {
+/// [`Error::Invalid`] for a scene too large for the format (4 GiB); [`Error::Core`] for a camera that is not there.
+pub fn write(problem: &Problem, solution: &Solution, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let field = VertexField::new(problem, solution);
+    let exposure = view::exposure(problem, &field, &view_options(options))?;
+    write_field(problem, &field, exposure)
+}
+
+fn write_field(problem: &Problem, field: &VertexField, exposure: Exposure) -> Result<Vec<u8>, Error> {
     let edge_points = field.edge_points(problem);
     let mut writer = Writer { problem, field, exposure, edge_points, glb: GlbBuilder::new(), images: HashMap::new() };
     writer.glb.set("asset", asset(exposure));
@@ -286,19 +294,12 @@ fn embed(glb: &mut GlbBuilder, image: &Image) -> Result<EmbeddedImage, Error> {
     let brightest = Rgb::from_srgb8([brightest_code; 3]).g;
     let code = |v: u8| (linear_to_srgb((Rgb::from_srgb8([v; 3]).g / brightest).min(1.0)) * 255.0).round() as u8;
     let codes: [u8; 256] = std::array::from_fn(|v| code(v as u8));
-    let texels: Vec<u8> = image.texels.iter().flatten().map(|&v| codes[usize::from(v)]).collect();
+    let texels: Vec<[u8; 3]> = image.texels.iter().map(|texel| texel.map(|v| codes[usize::from(v)])).collect();
     let sums = image.texels.iter().fold([0.0f64; 3], |sums, &texel| {
         let linear = Rgb::from_srgb8(texel).to_array();
         std::array::from_fn(|c| sums[c] + f64::from(linear[c]))
     });
-    let mut png = Vec::new();
-    image::codecs::png::PngEncoder::new(&mut png)
-        .write_image(&texels, image.width, image.height, image::ExtendedColorType::Rgb8)
-        .map_err(|source| Error::Invalid {
-            file: "GLB".into(),
-            place: format!("image {}", image.name),
-            what: source.to_string(),
-        })?;
+    let png = encode_png(image.width, image.height, &texels)?;
     Ok(EmbeddedImage {
         index: glb.add_image_png(&image.name, &png),
         mean: Rgb::from(sums.map(|sum| (sum / image.texels.len().max(1) as f64) as f32)),
@@ -340,7 +341,6 @@ mod tests {
     use super::*;
     use isolux_core::scene::{Material, Scene, Triangle, Vertex};
     use isolux_core::solution::{Balance, Provenance, Work};
-    use isolux_core::{Problem, Solution};
 
     /// Two halves of a two-sided unit square with a texture of one dark texel; `light` [lux] in front and behind.
     fn square(divisions: &[u16], light: [f32; 2]) -> Vec<u8> {
@@ -369,7 +369,8 @@ mod tests {
         let std_error = irradiance.clone();
         let solution =
             Solution { irradiance, std_error, work: Work::default(), balance: Balance::default(), provenance };
-        write(&problem, &VertexField::new(&problem, &solution), Exposure { stops: -4.0 }).unwrap()
+        let options = ExportOptions { exposure: Some(-4.0), ..ExportOptions::default() };
+        write(&problem, &solution, &options).unwrap()
     }
 
     /// Corner positions of all faces, and colours of all vertices.

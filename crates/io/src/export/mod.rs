@@ -7,6 +7,7 @@ pub mod glb_container;
 pub mod image;
 pub mod json;
 mod npz;
+mod picture;
 mod ply;
 pub mod scene_glb;
 mod vtu;
@@ -32,6 +33,9 @@ pub const FORMATS: &[Exporter] = &[
         what: "the whole solution with its scene, to be read again",
         write: |problem, solution, _| solution_file::write(problem, solution),
     },
+    Exporter { extension: "glb", what: "the lit scene, for any viewer of glTF", write: glb::write },
+    Exporter { extension: "png", what: "a picture for a screen", write: picture::write_png },
+    Exporter { extension: "exr", what: "a picture in cd/m², linear, for further work", write: picture::write_exr },
     Exporter { extension: "ply", what: "elements as coloured triangles with their light", write: ply::write },
     Exporter { extension: "vtu", what: "elements as cells with their light, for ParaView", write: vtu::write },
     Exporter { extension: "csv", what: "a table with a row for each element", write: csv::write },
@@ -49,7 +53,8 @@ pub struct ExportOptions {
     pub height: Option<u32>,
     /// Samples per pixel.
     pub samples: u32,
-    /// Exposure of a picture [EV]; automatic if `None`.
+    /// Exposure of a picture in stops, a stop more is twice as bright (see [`isolux_core::view::tone`]); automatic if
+    /// `None`.
     pub exposure: Option<f32>,
     /// More entries for the summary: what only the caller knows, like the seconds it took.
     pub extras: serde_json::Map<String, serde_json::Value>,

@@ -1,0 +1,28 @@
+//! A picture of the solution: tone-mapped as PNG, linear in cd/m² as OpenEXR.
+
+use super::ExportOptions;
+use super::image::{encode_exr, encode_png};
+use crate::Error;
+use isolux_core::view::{self, Exposure, ViewOptions};
+use isolux_core::{Problem, Solution};
+
+pub fn write_png(problem: &Problem, solution: &Solution, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let picture = view::render(problem, solution, &view_options(options))?;
+    encode_png(picture.width, picture.height, &picture.to_srgb8())
+}
+
+pub fn write_exr(problem: &Problem, solution: &Solution, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let picture = view::render(problem, solution, &view_options(options))?;
+    encode_exr(picture.width, picture.height, &picture.luminance)
+}
+
+/// What of the options concerns a picture.
+pub fn view_options(options: &ExportOptions) -> ViewOptions {
+    ViewOptions {
+        camera: options.camera.clone(),
+        width: options.width,
+        height: options.height,
+        samples: options.samples,
+        exposure: options.exposure.map(|stops| Exposure { stops }),
+    }
+}
