@@ -155,8 +155,8 @@ impl Writer<'_> {
         Ok(self.glb.push("meshes", json!({ "name": object.name, "primitives": [primitive] })))
     }
 
-    /// Whether `e` has next to no light while the other side of the same surface has: the inside of a sofa or a wall. It is
-    /// left out, for a program that draws slivers of both sides confuses them, and the dark one would show as specks.
+    /// Whether `e` has next to no light while the other side of the same surface has: the inside of a sofa or a wall. Nobody
+    /// sees it there, and leaving it out makes the file smaller.
     fn is_inside(&self, e: u32) -> bool {
         let mesh = &self.problem.mesh;
         let triangle = mesh.triangle(e);
