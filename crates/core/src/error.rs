@@ -19,6 +19,10 @@ pub enum Error {
     #[error("there is no {kind} called '{name}'; did you mean '{nearest}'?")]
     UnknownName { kind: &'static str, name: String, nearest: String },
 
+    /// Two solutions that have nothing in common; the text says why.
+    #[error("the two solutions cannot be compared: {what}")]
+    NotComparable { what: &'static str },
+
     /// A number that is not finite reached the solver.
     #[error("element {element} has {what} {value}, which is not a finite number")]
     NotFinite { element: u32, what: &'static str, value: f32 },

@@ -4,6 +4,7 @@
 //! `math -> {scene, sampling} -> mesh -> geometry -> transport -> solvers -> solution -> view`
 //! (see ARCHITECTURE.md). Units are SI and photometric throughout: metres, lumens, lux (lm/m²), candela.
 
+pub mod compare;
 mod error;
 pub mod geometry;
 pub mod math;

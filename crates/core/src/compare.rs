@@ -1,0 +1,212 @@
+//! How two solutions of the same problem differ, and whether their error bars explain it.
+//!
+//! All numbers are of luminance irradiance `E` [lux]. With areas `A`, irradiances `a`, `b` and standard errors `s, t` of an
+//! element: the relative RMS difference is `sqrt(sum A (a - b)² / sum A)` over the mean of `(a + b) / 2`; the score of an
+//! element is `z = (a - b) / sqrt(s² + t²)`, about standard normal if the solutions are independent, unbiased and honest.
+
+use crate::solution::luminance_error;
+use crate::{Error, Problem, Solution};
+
+/// The result of [`compare`].
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Comparison {
+    pub elements: usize,
+    /// Area-weighted RMS of the difference, relative to the mean irradiance of both; NaN if both are dark.
+    pub rms: f64,
+    /// The value of `rms` that the standard errors of independent solutions let expect; NaN while they are unknown.
+    pub expected_rms: f64,
+    pub largest: Largest,
+    /// Flux [lm] that leaves all surfaces, `sum A B`, in the first and in the second solution.
+    pub power: [f64; 2],
+    /// At least so many standard deviations lie between the two powers. The errors of elements are correlated in ways
+    /// that a solution does not record, but the deviation of a sum is never larger than the sum of the deviations.
+    /// `None` while these are unknown or zero.
+    pub power_z_at_least: Option<f64>,
+    /// Scores of the elements; `None` if no element has a known, positive standard error.
+    pub z: Option<Scores>,
+}
+
+/// The element with the largest absolute difference, the first of them if there are several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Largest {
+    pub element: u32,
+    /// Irradiance [lux] in the first and in the second solution.
+    pub irradiance: [f64; 2],
+}
+
+/// The distribution of z over the elements that have one, each counted once.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Scores {
+    pub elements: usize,
+    pub mean: f64,
+    pub std_dev: f64,
+    /// Share of the elements with `|z| > 3`; 0.0027 for a normal distribution.
+    pub beyond_3: f64,
+}
+
+/// Compares solution `a` of `problem` with solution `b` of `other`.
+///
+/// # Errors
+/// [`Error::NotComparable`] if the two problems are not the same scene cut into the same elements.
+pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -> Result<Comparison, Error> {
+    same_problem(problem, other)?;
+    let mesh = &problem.mesh;
+    let (mut area, mut sum, mut sum_sq, mut variance) = (0.0, 0.0, 0.0, 0.0);
+    let (mut power, mut power_bound) = ([0.0; 2], 0.0);
+    let mut largest = Largest::default();
+    let mut scores = Vec::new();
+    for e in mesh.elements() {
+        let element_area = f64::from(mesh.area(e));
+        let lux = [a, b].map(|s| f64::from(s.irradiance[e as usize].luminance()));
+        let errors = [a, b].map(|s| f64::from(luminance_error(s.std_error[e as usize])));
+        let (difference, deviation) = (lux[0] - lux[1], errors[0].hypot(errors[1]));
+        area += element_area;
+        sum += element_area * 0.5 * (lux[0] + lux[1]);
+        sum_sq += element_area * difference.powi(2);
+        variance += element_area * deviation.powi(2);
+        for (power, solution) in power.iter_mut().zip([a, b]) {
+            *power += element_area * f64::from(solution.radiosity(problem, e).luminance());
+        }
+        let reflectivity = f64::from(mesh.reflectivity(e).max_channel());
+        power_bound += element_area * reflectivity * (errors[0] + errors[1]);
+        if difference.abs() > (largest.irradiance[0] - largest.irradiance[1]).abs() {
+            largest = Largest { element: e, irradiance: lux };
+        }
+        if deviation > 0.0 {
+            scores.push(difference / deviation);
+        }
+    }
+    let relative = |sum_sq: f64| (sum_sq / area).sqrt() / (sum / area);
+    let power_z = (power[0] - power[1]).abs() / power_bound;
+    Ok(Comparison {
+        elements: mesh.len(),
+        rms: relative(sum_sq),
+        expected_rms: relative(variance),
+        largest,
+        power,
+        power_z_at_least: power_z.is_finite().then_some(power_z),
+        z: Scores::of(&scores),
+    })
+}
+
+impl Scores {
+    fn of(scores: &[f64]) -> Option<Scores> {
+        let count = scores.len() as f64;
+        let mean = scores.iter().sum::<f64>() / count;
+        let variance = scores.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / count;
+        let beyond = scores.iter().filter(|z| z.abs() > 3.0).count() as f64;
+        let of_all = Scores { elements: scores.len(), mean, std_dev: variance.sqrt(), beyond_3: beyond / count };
+        (!scores.is_empty()).then_some(of_all)
+    }
+}
+
+fn same_problem(a: &Problem, b: &Problem) -> Result<(), Error> {
+    if a.scene.hash() != b.scene.hash() {
+        return Err(Error::NotComparable { what: "they are of different scenes (geometry, materials or lights)" });
+    }
+    let same_cut = (0..a.scene.triangles.len() as u32).all(|t| a.mesh.divisions(t) == b.mesh.divisions(t));
+    if !same_cut {
+        return Err(Error::NotComparable { what: "the scene is cut into different elements" });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+    use crate::mesh::Resolution;
+    use crate::scene::{Material, Object, Scene, Triangle, Vertex};
+    use crate::solution::{Balance, Provenance, Work};
+    use glam::Vec3;
+
+    /// Two triangles of 1 m² and 3 m², `rho = 1/2`, one element each.
+    fn problem() -> Problem {
+        let corners = [Vec3::ZERO, Vec3::X, 2.0 * Vec3::Y, 6.0 * Vec3::Z];
+        let triangle = |vertices| Triangle { vertices, object: 0, source: 0 };
+        let scene = Scene {
+            vertices: corners.map(Vertex::at).to_vec(),
+            triangles: vec![triangle([0, 1, 2]), triangle([0, 1, 3])],
+            objects: vec![Object { name: "sheet".into(), material: 0 }],
+            materials: vec![Material::diffuse("grey", Rgb::grey(0.5))],
+            ..Scene::default()
+        };
+        Problem::new(scene, Resolution::Elements(2)).unwrap()
+    }
+
+    /// Irradiance and standard error of the small and of the large triangle.
+    fn solution(problem: &Problem, small: [f32; 2], large: [f32; 2]) -> Solution {
+        let values = |k: usize| {
+            problem
+                .mesh
+                .elements()
+                .map(move |e| Rgb::grey(if problem.mesh.triangle(e) == 0 { small[k] } else { large[k] }))
+        };
+        Solution {
+            irradiance: values(0).collect(),
+            std_error: values(1).collect(),
+            work: Work::default(),
+            balance: Balance::default(),
+            provenance: Provenance {
+                scene: String::new(),
+                scene_hash: 0,
+                method: String::new(),
+                parameters: vec![],
+                seed: 0,
+                version: String::new(),
+            },
+        }
+    }
+
+    fn close(x: f64, y: f64) -> bool {
+        (x - y).abs() < 1e-5
+    }
+
+    #[test]
+    fn a_small_case_by_hand() {
+        let problem = problem();
+        let a = solution(&problem, [10.0, 3.0], [20.0, 0.0]);
+        let b = solution(&problem, [20.0, 4.0], [20.0, 0.0]);
+        let c = compare(&problem, &a, &problem, &b).unwrap();
+        // Mean (15 + 3 * 20) / 4; mean square of the difference 100 / 4, of the deviation 25 / 4.
+        assert!(close(c.rms, 5.0 / 18.75) && close(c.expected_rms, 2.5 / 18.75), "{c:?}");
+        assert_eq!(problem.mesh.triangle(c.largest.element), 0);
+        assert!(close(c.largest.irradiance[0], 10.0) && close(c.largest.irradiance[1], 20.0));
+        assert!(close(c.power[0], 35.0) && close(c.power[1], 40.0));
+        assert!(close(c.power_z_at_least.unwrap(), 5.0 / 3.5));
+        let z = c.z.unwrap();
+        assert_eq!(z.elements, 1, "an element without an error has no score");
+        assert!(close(z.mean, -2.0) && close(z.std_dev, 0.0) && z.beyond_3 == 0.0);
+    }
+
+    #[test]
+    fn a_difference_far_beyond_the_error_bars_is_counted() {
+        let problem = problem();
+        let a = solution(&problem, [10.0, 1.0], [20.0, 1.0]);
+        let b = solution(&problem, [10.0, 1.0], [30.0, 1.0]);
+        let z = compare(&problem, &a, &problem, &b).unwrap().z.unwrap();
+        assert_eq!((z.elements, z.beyond_3), (2, 0.5));
+    }
+
+    #[test]
+    fn a_solution_does_not_differ_from_itself_and_unknown_errors_give_no_scores() {
+        let problem = problem();
+        let a = solution(&problem, [10.0, f32::NAN], [20.0, f32::NAN]);
+        let c = compare(&problem, &a, &problem, &a).unwrap();
+        assert_eq!((c.rms, c.largest, c.power_z_at_least, c.z), (0.0, Largest::default(), None, None));
+        assert!(c.expected_rms.is_nan());
+    }
+
+    #[test]
+    fn other_scenes_and_other_elements_are_refused() {
+        let first = problem();
+        let a = solution(&first, [1.0, 0.1], [1.0, 0.1]);
+        let mut scene = first.scene.clone();
+        let finer = Problem::new(scene.clone(), Resolution::MaxEdge(0.5)).unwrap();
+        let refused = |other: &Problem| compare(&first, &a, other, &a).unwrap_err().to_string();
+        assert!(refused(&finer).contains("different elements"));
+        scene.materials[0].reflectivity = Rgb::grey(0.6);
+        let whiter = Problem::new(scene, Resolution::Elements(2)).unwrap();
+        assert!(refused(&whiter).contains("different scenes"));
+    }
+}
