@@ -1,0 +1,117 @@
+//! `isolux compare`: how two solutions differ, and whether their error bars explain it.
+
+use crate::failure::Failure;
+use crate::input;
+use crate::interrupt::watch;
+use crate::numbers::{count, digits, percent, three_digits};
+use crate::output::OpenFiles;
+use crate::terminal;
+use isolux_core::compare::{Comparison, compare};
+use isolux_core::{Error, Problem, Solution};
+use serde_json::json;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  isolux solve room.glb --seed 1 -o a.isolux
+  isolux solve room.glb --seed 2 -o b.isolux
+  isolux compare a.isolux b.isolux
+
+z is the difference of an element divided by its standard deviation. Of two independent, unbiased solutions with
+honest error bars z has mean 0 and standard deviation 1, and 0.3 % of the elements are beyond 3.";
+
+/// Compare two solutions of the same scene and elements
+///
+/// Differences are of irradiance in lux, weighted by area. Both files must have been solved with the same --elements or
+/// --max-edge.
+#[derive(Clone, Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Compare {
+    /// A .isolux file
+    a: PathBuf,
+
+    /// Another one
+    b: PathBuf,
+
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+impl Compare {
+    pub fn run(self) -> Result<u8, Failure> {
+        watch(&OpenFiles::default(), move |_| {
+            let (problem, a) = input::solution(&self.a)?;
+            let (other, b) = input::solution(&self.b)?;
+            let comparison = compare(&problem, &a, &other, &b).map_err(|error| {
+                let help = match error {
+                    Error::NotComparable { .. } => "solve the same scene with the same --elements or --max-edge",
+                    _ => "solve the scene again",
+                };
+                Failure::usage(format!("{}, {}: {error}", self.a.display(), self.b.display())).with_help(help)
+            })?;
+            drop(other);
+            let remarks = remarks(&a, &b);
+            if self.json {
+                return terminal::print(&as_json(&comparison, [&a, &b], &remarks)).map(|()| 0);
+            }
+            remarks.iter().for_each(|remark| terminal::warn(remark));
+            terminal::print(&in_words(&problem, &comparison)).map(|()| 0)
+        })
+    }
+}
+
+/// What speaks against taking the scores at their word.
+fn remarks(a: &Solution, b: &Solution) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if a.provenance.seed == b.provenance.seed {
+        remarks.push(format!("both have seed {}: they may not be independent, so z says little", a.provenance.seed));
+    }
+    remarks
+}
+
+fn as_json(comparison: &Comparison, solutions: [&Solution; 2], remarks: &[String]) -> String {
+    let mut object = json!(comparison);
+    object["solutions"] = json!(solutions.map(|s| json!({ "provenance": s.provenance, "work": s.work })));
+    object["remarks"] = json!(remarks);
+    object["version"] = json!(isolux_core::VERSION);
+    format!("{object}\n")
+}
+
+fn in_words(problem: &Problem, c: &Comparison) -> String {
+    let mut text = format!("{}: {} elements\n", terminal::harmless(&problem.scene.name), count(c.elements as u64));
+    text += &format!("  RMS difference      {} of the mean irradiance", percent(c.rms));
+    if c.expected_rms.is_finite() {
+        text += &format!("; the error bars let expect {}", percent(c.expected_rms));
+    }
+    text.push('\n');
+    let [a, b] = c.largest.irradiance;
+    if a == b {
+        text += "  largest difference  none\n";
+    } else {
+        let triangle = &problem.scene.triangles[problem.mesh.triangle(c.largest.element) as usize];
+        let object = terminal::harmless(&problem.scene.objects[triangle.object as usize].name);
+        let place = format!("element {} on '{object}'", c.largest.element);
+        text += &format!("  largest difference  {} and {} lux, {place}\n", digits(a, 4), digits(b, 4));
+    }
+    let [a, b] = c.power;
+    text += &format!("  power               {} and {} lm", digits(a, 6), digits(b, 6));
+    if a != b {
+        text += &format!(", {} apart", percent(2.0 * (a - b).abs() / (a + b)));
+    }
+    if let Some(z) = c.power_z_at_least.filter(|z| *z > 3.0) {
+        text += &format!("; that is at least {} standard deviations", three_digits(z));
+    }
+    text.push('\n');
+    text += &match c.z {
+        None => "  z                   unknown: there are no error bars\n".to_owned(),
+        Some(z) => format!(
+            "  z                   mean {:.3}, standard deviation {:.3}, {} beyond 3, over {} elements\n",
+            z.mean,
+            z.std_dev,
+            percent(z.beyond_3),
+            count(z.elements as u64)
+        ),
+    };
+    text
+}

@@ -1,0 +1,73 @@
+//! `isolux list`: the tables of what there is.
+
+use crate::failure::Failure;
+use crate::terminal;
+use isolux_core::scene::builtin::BUILT_IN;
+use isolux_core::solvers::stochastic_jacobi;
+use isolux_io::{export, import};
+
+const EXAMPLES: &str = "\
+Examples:
+  isolux list
+  isolux list scenes";
+
+/// Show the built-in scenes, the file formats and the methods
+#[derive(Clone, Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct List {
+    /// One of them only
+    what: Option<What>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum What {
+    /// Scenes that need no file
+    Scenes,
+    /// What is read and written
+    Formats,
+    /// Algorithms
+    Methods,
+}
+
+impl List {
+    pub fn run(self) -> Result<u8, Failure> {
+        let tables = [(What::Scenes, scenes as fn() -> String), (What::Formats, formats), (What::Methods, methods)];
+        let wanted = tables.iter().filter(|(what, _)| self.what.is_none_or(|wanted| wanted == *what));
+        let text: Vec<String> = wanted.map(|(_, table)| table()).collect();
+        terminal::print(&text.join("\n")).map(|()| 0)
+    }
+}
+
+fn scenes() -> String {
+    let mut text = "Built-in scenes, wherever a scene file may stand\n".to_owned();
+    for scene in &BUILT_IN {
+        text += &format!("  {:<12} {}\n", scene.name, scene.what);
+        for parameter in scene.parameters {
+            let with_default = format!("{}={}", parameter.name, parameter.default);
+            text += &format!("  {:<12}   :{with_default:<11} {}\n", "", parameter.what);
+        }
+    }
+    text
+}
+
+fn formats() -> String {
+    let mut text = "Scenes are read from\n".to_owned();
+    for format in import::FORMATS {
+        let extensions: Vec<String> = format.extensions.iter().map(|extension| format!(".{extension}")).collect();
+        text += &format!("  {:<12} {}: {}\n", extensions.join(" "), format.name, format.what);
+    }
+    text += "\nSolutions are written to (-o)\n";
+    for format in export::FORMATS {
+        text += &format!("  .{:<11} {}\n", format.extension, format.what);
+    }
+    text
+}
+
+fn methods() -> String {
+    format!(
+        "Methods\n  {}  shoots light until none is left, shoots again, gathers on small elements;\n  {:17}  \
+         independent replicates give every element its standard error\n",
+        stochastic_jacobi::NAME,
+        ""
+    )
+}

@@ -1,0 +1,209 @@
+//! `isolux solve`: from a scene to a solution, in files.
+
+use crate::arguments::{PictureArguments, SceneArguments, ThreadArguments};
+use crate::failure::{Failure, INTERRUPTED};
+use crate::interrupt::{Interrupt, watch};
+use crate::numbers::{parse_count, parse_time};
+use crate::output::Outputs;
+use crate::progress::{Display, ProgressArguments, Watch};
+use crate::summary::{Ended, Summary};
+use crate::{input, terminal};
+use isolux_core::mesh::Resolution;
+use isolux_core::run::run;
+use isolux_core::sampling::address::Address;
+use isolux_core::solvers::stochastic_jacobi::{Budget, Settings, StochasticJacobi};
+use isolux_core::{Problem, Solution};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+const EXAMPLES: &str = "\
+Examples:
+  isolux solve cornell-box -o cornell.png
+  isolux solve room.glb -o lit.glb -o lit.png -o lit.isolux
+  isolux solve room.glb --elements 1e6 --time 10min -o lit.isolux
+  isolux solve labyrinth:rho=0.9 --rays 50M --seed 7 --json > summary.json
+
+Formats, by the extension of -o: 'isolux list formats' explains them.
+
+Elements are the pieces of surface that get one value each: more of them show finer shadows and take more rays. \
+Without --rays and --time the number of rays follows from the elements, and is enough for a first look; the summary \
+says how many more bring the error down. Four times as many rays halve it.
+
+The same scene, options and seed give the same files, bit for bit, for any number of threads (but not with --time).
+
+Ctrl-C ends the solve and keeps the best result so far: the files are written, and the exit code is 130. A second \
+Ctrl-C stops at once and leaves old files as they were. SIGTERM does the same.";
+
+/// Compute the light on every surface of a scene
+///
+/// Irradiance is in lux, flux in lumens, lengths in metres. Every element gets a standard error.
+#[derive(Clone, Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Solve {
+    #[command(flatten)]
+    scene: SceneArguments,
+
+    /// A file to write, in the format of its extension; repeat it for several
+    #[arg(short, long = "output", value_name = "OUT")]
+    outputs: Vec<PathBuf>,
+
+    /// Number of elements to aim at, like 50000 or 1e6 [default: one for each side of a triangle, and 200k more]
+    #[arg(long, value_name = "N", value_parser = parse_count, conflicts_with = "max_edge")]
+    elements: Option<u64>,
+
+    /// Instead: longest edge of an element in metres
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    max_edge: Option<f32>,
+
+    /// Number of rays, like 1e6, 200k or 3M [default: by the number of elements]
+    #[arg(long, value_name = "N", value_parser = parse_count, conflicts_with = "time")]
+    rays: Option<u64>,
+
+    /// Instead: time to solve, like 90, 90s, 2min or 1.5h; reading and writing come on top
+    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    time: Option<Duration>,
+
+    /// Seed of the random numbers
+    #[arg(long, value_name = "S", default_value_t = Settings::default().seed)]
+    seed: u64,
+
+    #[command(flatten)]
+    threads: ThreadArguments,
+
+    /// Independent solutions that the error is estimated from, at least 8
+    #[arg(long, value_name = "R", default_value_t = Settings::default().replicates)]
+    replicates: u32,
+
+    /// Which random numbers a ray draws: per-iteration is unbiased, per-element a little more even
+    #[arg(long, default_value = Address::default().name(), value_parser = parse_address)]
+    address: Address,
+
+    #[command(flatten)]
+    picture: PictureArguments,
+
+    /// Print the summary as one JSON object
+    #[arg(long, help_heading = "Report")]
+    json: bool,
+
+    /// Objects in the table of irradiance: a number, or 'all'
+    #[arg(long, value_name = "N", default_value = "20", value_parser = parse_objects, help_heading = "Report")]
+    objects: usize,
+
+    /// Print nothing but errors
+    #[arg(short, long, help_heading = "Report", conflicts_with = "json")]
+    quiet: bool,
+
+    #[command(flatten, next_help_heading = "Report")]
+    progress: ProgressArguments,
+}
+
+fn parse_address(text: &str) -> Result<Address, String> {
+    let found = Address::ALL.into_iter().find(|address| address.name() == text);
+    found.ok_or_else(|| format!("it is one of {}", Address::ALL.map(Address::name).join(", ")))
+}
+
+fn parse_objects(text: &str) -> Result<usize, String> {
+    let number = if text == "all" { Ok(usize::MAX) } else { text.parse() };
+    number.map_err(|_| "give a number or 'all'".to_owned())
+}
+
+impl Solve {
+    pub fn run(self) -> Result<u8, Failure> {
+        let outputs = Outputs::open(&self.outputs, &[&self.scene.scene])?;
+        let pool = self.threads.pool()?;
+        let files = outputs.files.clone();
+        watch(&files, move |interrupt| pool.install(|| self.work(&outputs, interrupt)))
+    }
+
+    /// Reads, solves, writes and reports.
+    fn work(&self, outputs: &Outputs, interrupt: &Interrupt) -> Result<u8, Failure> {
+        let mut display = self.progress.display(self.quiet);
+        let result = self.work_watched(outputs, interrupt, &mut display);
+        display.clear();
+        result
+    }
+
+    fn work_watched(&self, outputs: &Outputs, interrupt: &Interrupt, display: &mut Display) -> Result<u8, Failure> {
+        display.stage("reading the scene");
+        let scene = input::scene(&self.scene.scene, &self.scene.options())?;
+        self.picture.check_camera(&scene)?;
+        display.stage("cutting the surfaces into elements");
+        let problem = Problem::new(scene, self.resolution())?;
+        let mut solver = StochasticJacobi::new(&problem, self.settings())?;
+
+        interrupt.keep_result();
+        let start = Instant::now();
+        let (solution, ended) = self.solve(&mut solver, &problem, display, start, interrupt);
+        let seconds = start.elapsed().as_secs_f64();
+        drop(solver);
+
+        let written = outputs.write(&problem, &solution, &self.picture.options(), display, interrupt)?;
+        display.clear();
+        let threads = rayon::current_num_threads();
+        let summary = Summary { problem: &problem, solution: &solution, ended, seconds, threads, outputs: &written };
+        self.report(&summary)?;
+        Ok(if interrupt.is_asked() { INTERRUPTED } else { 0 })
+    }
+
+    fn resolution(&self) -> Resolution {
+        match (self.elements, self.max_edge) {
+            (Some(elements), _) => Resolution::Elements(elements),
+            (None, Some(edge)) => Resolution::MaxEdge(edge),
+            (None, None) => Resolution::default(),
+        }
+    }
+
+    fn settings(&self) -> Settings {
+        let budget = match (self.rays, self.time) {
+            (Some(rays), _) => Budget::Rays(rays),
+            (None, Some(_)) => Budget::Endless,
+            (None, None) => Budget::Heuristic,
+        };
+        Settings { seed: self.seed, budget, replicates: self.replicates, address: self.address }
+    }
+
+    fn solve(
+        &self,
+        solver: &mut StochasticJacobi,
+        problem: &Problem,
+        display: &mut Display,
+        start: Instant,
+        interrupt: &Interrupt,
+    ) -> (Solution, Ended) {
+        let mut watch = Watch::new(display, start, self.time);
+        let mut ended = Ended::Complete;
+        let mut solution = run(solver, problem, |progress| {
+            watch.show(progress);
+            if interrupt.is_asked() {
+                ended = Ended::Interrupted;
+            } else if self.time.is_some_and(|limit| start.elapsed() >= limit) {
+                ended = Ended::TimeLimit;
+            }
+            if ended == Ended::Complete { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        let stopped = match ended {
+            Ended::Complete => return (solution, ended),
+            Ended::TimeLimit => "by the time limit",
+            Ended::Interrupted => {
+                display.say("interrupted: writing the best result so far. Ctrl-C again stops at once.");
+                "by the user"
+            }
+        };
+        // The files say, too, that these are not the rays the other parameters ask for.
+        solution.provenance.parameters.push(("stopped".to_owned(), stopped.to_owned()));
+        (solution, ended)
+    }
+
+    fn report(&self, summary: &Summary) -> Result<(), Failure> {
+        if self.json {
+            return terminal::print(&(summary.json() + "\n"));
+        }
+        if self.quiet {
+            return Ok(());
+        }
+        summary.warnings().iter().for_each(|warning| terminal::warn(warning));
+        summary.notes().iter().for_each(|note| terminal::note(&terminal::harmless(note)));
+        terminal::print(&summary.in_words(self.objects))
+    }
+}

@@ -1,0 +1,185 @@
+//! What a solve came to: for people in words and tables, for programs as one JSON object.
+
+use crate::numbers::{count, decimals_for, percent};
+use crate::output::{self, Written};
+use crate::progress::rays_in_words;
+use crate::report::Table;
+use isolux_core::report::{ObjectSummary, per_object};
+use isolux_core::{Problem, Solution};
+use isolux_io::export::json;
+use serde_json::{Map, Value, json};
+
+/// Share of the light that may be lost on the backs of surfaces, or escape, without a word [1].
+const NOTICEABLE: f64 = 0.01;
+
+/// An error above this gets a hint how to make it smaller [1].
+const LARGE_ERROR: f64 = 0.05;
+
+/// Why a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// All rays were traced.
+    Complete,
+    TimeLimit,
+    Interrupted,
+}
+
+/// Everything there is to say.
+pub struct Summary<'a> {
+    pub problem: &'a Problem,
+    pub solution: &'a Solution,
+    pub ended: Ended,
+    /// Time of solving [s], without reading and writing.
+    pub seconds: f64,
+    pub threads: usize,
+    pub outputs: &'a [Written],
+}
+
+impl Summary<'_> {
+    /// What may not be as it was meant.
+    pub fn warnings(&self) -> Vec<String> {
+        let balance = &self.solution.balance;
+        let lost = balance.back_face / balance.emitted;
+        let mut warnings = Vec::new();
+        if balance.emitted <= 0.0 {
+            warnings.push("nothing emits light, so everything is black; 'isolux check' says more".to_owned());
+        }
+        if lost > NOTICEABLE {
+            warnings.push(format!(
+                "{} of the light fell on the backs of one-sided surfaces and was lost: there are gaps, or normals point \
+                 the wrong way. What is lit by it is too dark; 'isolux check' shows where to look.",
+                percent(lost)
+            ));
+        }
+        if self.ended == Ended::Interrupted {
+            warnings.push("interrupted: this is the best result so far, less than was asked for".to_owned());
+        }
+        if self.solution.work.replicates < 2 && balance.emitted > 0.0 {
+            warnings.push(
+                "there is no error estimate yet: it takes two complete solutions; give more time or fewer elements"
+                    .to_owned(),
+            );
+        }
+        warnings
+    }
+
+    /// What is good to know: what the reader of the scene assumed, and where light went.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = self.problem.scene.remarks.clone();
+        let escaped = self.solution.balance.escaped / self.solution.balance.emitted;
+        if escaped > NOTICEABLE {
+            notes.push(format!("{} of the light left the scene through openings", percent(escaped)));
+        }
+        notes
+    }
+
+    /// One object, without a line break at its end.
+    pub fn json(&self) -> String {
+        let mut extras = Map::new();
+        extras.insert("seconds".into(), json!(self.seconds));
+        extras.insert("rays_per_second".into(), json!(self.solution.work.rays as f64 / self.seconds.max(1e-9)));
+        extras.insert("threads".into(), json!(self.threads));
+        extras.insert("interrupted".into(), json!(self.ended == Ended::Interrupted));
+        extras.insert("outputs".into(), json!(self.outputs));
+        extras.insert("remarks".into(), json!(self.notes()));
+        extras.insert("warnings".into(), json!(self.warnings()));
+        let summary: Value = json::summary(self.problem, self.solution, &extras);
+        summary.to_string()
+    }
+
+    /// Paragraphs and tables; the table of objects has at most `most_objects` rows.
+    pub fn in_words(&self, most_objects: usize) -> String {
+        let (scene, work) = (&self.problem.scene, &self.solution.work);
+        let mut text = format!(
+            "{}: {} elements on {} triangles\n{}",
+            crate::terminal::harmless(&scene.name),
+            count(self.problem.mesh.len() as u64),
+            count(scene.triangles.len() as u64),
+            rays_in_words(work.rays, self.seconds),
+        );
+        text +=
+            &format!(", {} {}, seed {}\n", self.threads, plural(self.threads, "thread"), self.solution.provenance.seed);
+        let error = self.solution.rms_error(self.problem);
+        if error.is_finite() {
+            text += &format!("Estimated error {} of the mean irradiance ", percent(error));
+            text += &format!("(RMS over all elements, from {} replicates)\n", work.replicates);
+            if error > LARGE_ERROR {
+                let rays = work.rays as f64 * (error / LARGE_ERROR).powi(2);
+                text += &format!("About {:.0} % would be left with --rays {}\n", 100.0 * LARGE_ERROR, round(rays));
+            }
+        }
+        text += &self.balance();
+        text += &self.objects(most_objects);
+        if !self.outputs.is_empty() {
+            text += &format!("\nWrote {}\n", output::in_words(self.outputs));
+        }
+        text
+    }
+
+    fn balance(&self) -> String {
+        let b = &self.solution.balance;
+        let mut table = Table::new(&[]);
+        let decimals = decimals_for(b.emitted, 5);
+        let cell = |flux: f64| format!("{flux:.decimals$}");
+        table.row("emitted", [cell(b.emitted), String::new()]);
+        let parts = [
+            ("absorbed by surfaces", b.absorbed),
+            ("escaped from the scene", b.escaped),
+            ("lost on backs of surfaces", b.back_face),
+            ("not yet followed to its end", b.unshot),
+        ];
+        for (name, flux) in parts {
+            let share = match 100.0 * flux / b.emitted {
+                share if !share.is_finite() => String::new(),
+                share if share > 0.0 && share < 0.005 => "< 0.01 %".to_owned(),
+                share => format!("{share:.2} %"),
+            };
+            table.row(name, [cell(flux), share]);
+        }
+        format!("\nWhere the light went [lm]\n{}", table.lines())
+    }
+
+    fn objects(&self, most: usize) -> String {
+        let mut objects = per_object(self.problem, self.solution);
+        objects.sort_by(|a, b| b.area.total_cmp(&a.area));
+        let shown = &objects[..most.min(objects.len())];
+        let decimals = decimals_for(middle(shown.iter().map(|o| o.mean)), 4);
+        let area_decimals = decimals_for(middle(shown.iter().map(|o| o.area)), 3);
+        let mut table = Table::new(&["object", "area [m²]", "mean", "min", "max"]);
+        for ObjectSummary { name, area, mean, min, max, .. } in shown {
+            let lux = |value: &f64| format!("{value:.decimals$}");
+            table.row(name, [format!("{area:.area_decimals$}"), lux(mean), lux(min), lux(max)]);
+        }
+        let mut text = format!("\nIrradiance [lux], largest objects first\n{}", table.lines());
+        if shown.len() < objects.len() {
+            text += &format!(
+                "  and {} more objects; --objects all shows them\n",
+                count((objects.len() - shown.len()) as u64)
+            );
+        }
+        text
+    }
+}
+
+/// A number of rays with two digits, as `--rays` takes it: `3.8M`.
+fn round(rays: f64) -> String {
+    let step = 10f64.powi(rays.log10().floor() as i32 - 1);
+    match (rays / step).ceil() * step {
+        n if n < 1e6 => format!("{}k", (n / 1e3).ceil()),
+        n if n < 1e7 => format!("{:.1}M", n / 1e6),
+        n if n < 1e9 => format!("{:.0}M", n / 1e6),
+        n => format!("{:.1}G", n / 1e9),
+    }
+}
+
+/// The median, 0 of nothing.
+fn middle(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
+}
+
+/// `word`, in the plural unless `number` is one.
+pub fn plural(number: usize, word: &str) -> String {
+    if number == 1 { word.to_owned() } else { format!("{word}s") }
+}

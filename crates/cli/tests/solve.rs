@@ -1,0 +1,102 @@
+//! `isolux solve` as a new user would try it.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Folder, SMALL, with};
+use isolux_io::export::FORMATS;
+
+#[test]
+fn every_format_is_written_and_the_summary_says_so() {
+    let folder = Folder::new();
+    let names: Vec<String> = FORMATS.iter().map(|format| format!("a.{}", format.extension)).collect();
+    let outputs: Vec<&str> = names.iter().flat_map(|name| ["-o", name.as_str()]).collect();
+    let text = folder.prints(&with(&["solve"], &with(&SMALL, &outputs)));
+    for name in &names {
+        assert!(!folder.read(name).is_empty() && text.contains(name.as_str()), "{name}: {text}");
+    }
+    assert_eq!(folder.names().len(), names.len(), "nothing else is left behind");
+    for word in ["Estimated error", "emitted", "absorbed", "escaped", "floor", "mean"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    assert!(!text.contains('\x1b'), "no colours in a pipe");
+}
+
+#[test]
+fn json_is_one_object_with_everything_that_was_promised() {
+    let folder = Folder::new();
+    let summary = folder.json(&with(&["solve", "--json", "-o", "a.csv", "--seed", "7", "--threads", "2"], &SMALL));
+    for key in ["scene", "elements", "triangles", "rays", "seconds", "rays_per_second", "rms_error_estimate", "version"]
+    {
+        assert!(!summary[key].is_null(), "{key}: {summary}");
+    }
+    let flux = |key: &str| summary["balance"][key].as_f64().unwrap();
+    let parts = flux("absorbed") + flux("escaped") + flux("back_face") + flux("unshot");
+    assert!(flux("emitted") > 0.0 && (parts / flux("emitted") - 1.0).abs() < 1e-6);
+    assert_eq!((summary["seed"].as_u64(), summary["threads"].as_u64()), (Some(7), Some(2)));
+    assert_eq!(summary["outputs"][0]["path"], "a.csv");
+    assert_eq!(summary["objects"].as_array().map(Vec::len), Some(6));
+    assert_eq!((&summary["warnings"], &summary["interrupted"]), (&serde_json::json!([]), &serde_json::json!(false)));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_for_any_number_of_threads() {
+    let folder = Folder::new();
+    let files: Vec<String> = FORMATS.iter().map(|format| format!("a.{}", format.extension)).collect();
+    let outputs: Vec<&str> = files.iter().flat_map(|name| ["-o", name.as_str()]).collect();
+    let mut first = Vec::new();
+    for threads in ["1", "2", "3", "7"] {
+        folder.prints(&with(&["solve", "--threads", threads], &with(&SMALL, &outputs)));
+        let bytes: Vec<Vec<u8>> = files.iter().map(|name| folder.read(name)).collect();
+        if first.is_empty() {
+            first = bytes;
+        } else {
+            assert!(bytes == first, "{threads} threads");
+        }
+    }
+    folder.prints(&with(&["solve", "--seed", "2"], &with(&SMALL, &outputs)));
+    assert!(folder.read("a.csv") != first[FORMATS.iter().position(|f| f.extension == "csv").unwrap()]);
+}
+
+#[test]
+fn a_time_limit_is_kept_and_written_down() {
+    let folder = Folder::new();
+    let summary = folder.json(&["solve", "box", "--elements", "100", "--time", "0.5s", "--json", "-o", "a.isolux"]);
+    let seconds = summary["seconds"].as_f64().unwrap();
+    assert!((0.5..30.0).contains(&seconds), "{seconds}");
+    assert!(summary["rms_error_estimate"].as_f64().unwrap() < 1.0);
+    assert_eq!(summary["parameters"]["stopped"], "by the time limit");
+}
+
+#[test]
+fn too_little_time_for_an_error_bar_is_said_clearly() {
+    let folder = Folder::new();
+    let arguments = ["solve", "box", "--elements", "50k", "--time", "0.001", "-o", "a.json"];
+    let output = folder.run(&arguments);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no error estimate yet"));
+    let summary: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
+    assert!(summary["rms_error_estimate"].is_null());
+}
+
+#[test]
+fn nothing_is_said_that_was_not_asked_for() {
+    let folder = Folder::new();
+    let quiet = folder.run(&with(&["solve", "--quiet", "-o", "a.csv"], &SMALL));
+    assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty());
+    let normal = folder.run(&with(&["solve"], &SMALL));
+    assert!(normal.stderr.is_empty(), "no progress in a pipe: {}", String::from_utf8_lossy(&normal.stderr));
+    assert!(!normal.stdout.is_empty());
+}
+
+#[test]
+fn elements_of_any_kind_can_be_asked_for() {
+    let folder = Folder::new();
+    let elements = |arguments: &[&str]| {
+        let all = with(&["solve", "box", "--rays", "1e4", "--json"], arguments);
+        folder.json(&all)["elements"].as_u64().unwrap()
+    };
+    assert!((500..=1000).contains(&elements(&["--elements", "1k"])));
+    assert!(elements(&["--max-edge", "0.5"]) > elements(&["--max-edge", "1"]));
+}
