@@ -6,4 +6,5 @@ pub mod budget;
 pub mod exact;
 pub mod projections;
 pub mod random;
+pub mod reference;
 pub mod statistics;

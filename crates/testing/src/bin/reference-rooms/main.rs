@@ -1,0 +1,107 @@
+//! The study `studies/reference-rooms`: three rooms, solved on a coarse and on a fine mesh, against an independent renderer.
+//!
+//! `reference-rooms [SCENES] [OUT]` reads the rooms and references in the folder SCENES (`shared/scenes` beside the
+//! workspace or above it) and writes `ratios.csv`, `points.csv` and `z.svg` into the folder OUT (`studies/reference-rooms`).
+
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod plot;
+mod table;
+
+use anyhow::{Context, Result};
+use isolux_core::Problem;
+use isolux_core::mesh::Resolution;
+use isolux_core::run::run;
+use isolux_core::solution::luminance_error;
+use isolux_core::solvers::StochasticJacobi;
+use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_io::files::OutputFile;
+use isolux_io::import::{ImportOptions, read_scene};
+use isolux_testing::reference::{self, CHANNELS, Comparison, LUMINANCE};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// The rooms, and with how many rays each of the solutions on the coarse and on the fine mesh is computed.
+const ROOMS: [(&str, [u64; 2]); 3] = [
+    ("cornell-box", [8_000_000, 24_000_000]),
+    ("living-room", [8_000_000, 24_000_000]),
+    ("classroom", [8_000_000, 24_000_000]),
+];
+/// Elements beyond one for each side of a triangle, of the coarse and of the fine mesh.
+const MORE_ELEMENTS: [u64; 2] = [200_000, 2_000_000];
+/// One independent solution each.
+const SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
+/// Complete solutions behind the error bars of one solution.
+const REPLICATES: u32 = 8;
+
+/// A room on one mesh, compared.
+struct Trial {
+    room: &'static str,
+    problem: Problem,
+    comparison: Comparison,
+    /// Mean luminance irradiance [lux] over all solutions of each element, and its variance.
+    light: Vec<(f32, f32)>,
+    rays: u64,
+}
+
+fn main() -> Result<()> {
+    let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
+    let Some(scenes) = arguments.next().or_else(reference::scenes_folder) else {
+        eprintln!(
+            "There is no folder shared/scenes beside the workspace or above it, so there is nothing to compare with."
+        );
+        eprintln!("Skipped. To name the folder: reference-rooms SCENES");
+        return Ok(());
+    };
+    let out = arguments.next().unwrap_or_else(|| PathBuf::from("studies/reference-rooms"));
+    let output = |name: &str| OutputFile::create(&out.join(name));
+    let (ratios, points, picture) = (output("ratios.csv")?, output("points.csv")?, output("z.svg")?);
+
+    let mut tables = table::Tables::default();
+    let mut panels = Vec::new();
+    for (room, rays) in ROOMS {
+        let mut z = Vec::new();
+        for (more, rays) in MORE_ELEMENTS.into_iter().zip(rays) {
+            let trial = compare(&scenes, room, more, rays).with_context(|| format!("{room}, {more} more elements"))?;
+            tables.add(&trial);
+            z.push((0..trial.comparison.points.len()).map(|i| trial.comparison.z(i, LUMINANCE)).collect());
+        }
+        panels.push(plot::Panel { title: room, z });
+    }
+    ratios.finish(tables.ratios.as_bytes())?;
+    points.finish(tables.points.as_bytes())?;
+    picture.finish(plot::histograms(&panels)?.as_bytes())?;
+    Ok(())
+}
+
+/// Solves the room once for each seed, and says how it went.
+fn compare(scenes: &Path, room: &'static str, more: u64, rays: u64) -> Result<Trial> {
+    let start = std::time::Instant::now();
+    let scene = read_scene(&scenes.join(room).with_extension("glb"), &ImportOptions::default())?;
+    let problem = Problem::new(scene, Resolution::Extra(more))?;
+    let points = reference::read(&scenes.join("ref").join(room).with_extension("npz"))?;
+    let mut comparison = Comparison::new(points, &problem)?;
+    let mut light = vec![(0.0, 0.0); problem.mesh.len()];
+    let mut rays_in_all = 0;
+    for seed in SEEDS {
+        let settings = Settings { seed, budget: Budget::Rays(rays), replicates: REPLICATES, ..Settings::default() };
+        let mut solver = StochasticJacobi::new(&problem, settings)?;
+        let solution = run(&mut solver, &problem, |_| ControlFlow::Continue(()));
+        rays_in_all += solution.work.rays;
+        comparison.push(&solution);
+        for ((mean, variance), (value, error)) in
+            light.iter_mut().zip(solution.irradiance.iter().zip(&solution.std_error))
+        {
+            *mean += value.luminance() / SEEDS.count() as f32;
+            *variance += (luminance_error(*error) / SEEDS.count() as f32).powi(2);
+        }
+    }
+    let (elements, seconds) = (problem.mesh.len(), start.elapsed().as_secs_f64());
+    println!("{room}: {elements} elements, {:.0} million rays, {seconds:.0} s", rays_in_all as f64 / 1e6);
+    for (channel, name) in CHANNELS.iter().enumerate() {
+        let ratio = comparison.ratio(channel, |_| true);
+        let verdict = if ratio.agrees() { "agrees" } else { "DISAGREES" };
+        println!("  {name:9} {:.4} ± {:.4}  {verdict}", ratio.value, ratio.std_error);
+    }
+    Ok(Trial { room, problem, comparison, light, rays: rays_in_all })
+}

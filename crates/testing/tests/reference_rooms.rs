@@ -1,0 +1,44 @@
+//! The Cornell box against an independent renderer, and a fault that the comparison must see.
+
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
+
+use isolux_core::Problem;
+use isolux_core::mesh::Resolution;
+use isolux_core::run::run;
+use isolux_core::scene::Scene;
+use isolux_core::solvers::StochasticJacobi;
+use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_io::import::{ImportOptions, read_scene};
+use isolux_testing::reference::{self, CHANNELS, Comparison, Ratio};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// Ratios of four solutions of `scene` to the reference, one for each channel. The same numbers in every run of the test.
+fn ratios(folder: &Path, scene: Scene) -> [Ratio; 4] {
+    let problem = Problem::new(scene, Resolution::Elements(20_000)).unwrap();
+    let points = reference::read(&folder.join("ref/cornell-box.npz")).unwrap();
+    let mut comparison = Comparison::new(points, &problem).unwrap();
+    for seed in 1..=4 {
+        let settings = Settings { seed, budget: Budget::Rays(2_000_000), replicates: 8, ..Settings::default() };
+        let mut solver = StochasticJacobi::new(&problem, settings).unwrap();
+        comparison.push(&run(&mut solver, &problem, |_| ControlFlow::Continue(())));
+    }
+    std::array::from_fn(|channel| comparison.ratio(channel, |_| true))
+}
+
+#[test]
+fn the_cornell_box_agrees_with_an_independent_renderer_and_not_with_three_percent_more_reflectivity() {
+    let Some(folder) = reference::scenes_folder() else {
+        eprintln!("there is no folder shared/scenes with references: skipped");
+        return;
+    };
+    let scene = read_scene(&folder.join("cornell-box.glb"), &ImportOptions::default()).unwrap();
+    for (ratio, channel) in ratios(&folder, scene.clone()).into_iter().zip(CHANNELS) {
+        assert!(ratio.agrees(), "{channel}: {} ± {}", ratio.value, ratio.std_error);
+    }
+    let mut brighter = scene;
+    brighter.materials.iter_mut().for_each(|material| material.reflectivity = material.reflectivity * 1.03);
+    for (ratio, channel) in ratios(&folder, brighter).into_iter().zip(CHANNELS) {
+        assert!(!ratio.agrees(), "{channel}: {} ± {} hides the fault", ratio.value, ratio.std_error);
+    }
+}
