@@ -56,11 +56,20 @@ pub fn scenes_folder() -> Option<PathBuf> {
     workspace.map(|folder| folder.join("shared/scenes")).find(|folder| folder.join("ref").is_dir())
 }
 
-/// The points of a reference that are good to compare with: lit, known to 3 %, nothing closer than 2 mm.
+/// Points of a reference.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Good to compare with: lit, known to 3 %, nothing closer than 2 mm.
+    pub good: Vec<Point>,
+    /// No light reached these: insides of furniture and walls, faces that lie on others.
+    pub dark: Vec<Point>,
+}
+
+/// Reads the reference at `path`.
 ///
 /// # Errors
-/// If the file at `path` cannot be read or has not the expected arrays.
-pub fn read(path: &Path) -> Result<Vec<Point>> {
+/// If the file cannot be read or has not the expected arrays.
+pub fn read(path: &Path) -> Result<Reference> {
     let mut archive = zip::ZipArchive::new(Cursor::new(isolux_io::files::read(path)?))?;
     let good: Vec<bool> = array(&mut archive, "good", 1)?;
     let triangle: Vec<i64> = array(&mut archive, "triangle", 1)?;
@@ -87,7 +96,10 @@ pub fn read(path: &Path) -> Result<Vec<Point>> {
             },
         })
     };
-    (0..n).filter(|&i| good[i]).map(read_point).collect()
+    Ok(Reference {
+        good: (0..n).filter(|&i| good[i]).map(read_point).collect::<Result<_>>()?,
+        dark: (0..n).filter(|&i| luminance[i] == 0.0).map(read_point).collect::<Result<_>>()?,
+    })
 }
 
 /// An array of the archive with `width` numbers a row, rows one after the other.
@@ -158,6 +170,11 @@ impl Comparison {
         let runs: Moments = self.runs.iter().map(ratio).collect();
         let std_error = runs.std_error().hypot(variance.sqrt() / total).hypot(SHARED_ERROR);
         Ratio { value: runs.mean, std_error }
+    }
+
+    /// Sum over all points of the mean over the runs.
+    pub fn total(&self, channel: usize) -> f64 {
+        (0..self.points.len()).map(|i| self.mean(i).value[channel]).sum()
     }
 
     /// Mean over the runs at point `i`, with the standard error that the runs themselves state.

@@ -16,8 +16,8 @@ use std::path::Path;
 /// Ratios of four solutions of `scene` to the reference, one for each channel. The same numbers in every run of the test.
 fn ratios(folder: &Path, scene: Scene) -> [Ratio; 4] {
     let problem = Problem::new(scene, Resolution::Elements(20_000)).unwrap();
-    let points = reference::read(&folder.join("ref/cornell-box.npz")).unwrap();
-    let mut comparison = Comparison::new(points, &problem).unwrap();
+    let reference = reference::read(&folder.join("ref/cornell-box.npz")).unwrap();
+    let mut comparison = Comparison::new(reference.good, &problem).unwrap();
     for seed in 1..=4 {
         let settings = Settings { seed, budget: Budget::Rays(2_000_000), replicates: 8, ..Settings::default() };
         let mut solver = StochasticJacobi::new(&problem, settings).unwrap();

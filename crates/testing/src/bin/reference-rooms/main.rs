@@ -1,4 +1,4 @@
-//! The study `studies/reference-rooms`: three rooms, solved on a coarse and on a fine mesh, against an independent renderer.
+//! The study `studies/reference-rooms`: three rooms, solved on coarse and fine meshes, against an independent renderer.
 //!
 //! `reference-rooms [SCENES] [OUT]` reads the rooms and references in the folder SCENES (`shared/scenes` beside the
 //! workspace or above it) and writes `ratios.csv`, `points.csv` and `z.svg` into the folder OUT (`studies/reference-rooms`).
@@ -21,14 +21,13 @@ use isolux_testing::reference::{self, CHANNELS, Comparison, LUMINANCE};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// The rooms, and with how many rays each of the solutions on the coarse and on the fine mesh is computed.
-const ROOMS: [(&str, [u64; 2]); 3] = [
-    ("cornell-box", [8_000_000, 24_000_000]),
-    ("living-room", [8_000_000, 24_000_000]),
-    ("classroom", [8_000_000, 24_000_000]),
+/// The rooms, each on a coarse, a fine and perhaps a very fine mesh: how many elements beyond one for each side of a
+/// triangle, and how many rays for each solution.
+const ROOMS: [(&str, &[(u64, u64)]); 3] = [
+    ("cornell-box", &[(20_000, 8_000_000), (200_000, 16_000_000)]),
+    ("living-room", &[(200_000, 8_000_000), (2_000_000, 18_000_000)]),
+    ("classroom", &[(200_000, 8_000_000), (2_000_000, 18_000_000), (8_000_000, 18_000_000)]),
 ];
-/// Elements beyond one for each side of a triangle, of the coarse and of the fine mesh.
-const MORE_ELEMENTS: [u64; 2] = [200_000, 2_000_000];
 /// One independent solution each.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
 /// Complete solutions behind the error bars of one solution.
@@ -39,9 +38,13 @@ struct Trial {
     room: &'static str,
     problem: Problem,
     comparison: Comparison,
+    /// The same where the reference has no light.
+    dark: Comparison,
     /// Mean luminance irradiance [lux] over all solutions of each element, and its variance.
     light: Vec<(f32, f32)>,
     rays: u64,
+    /// Light that the backs of one-sided surfaces took, relative to the emitted light.
+    back_face: f64,
 }
 
 fn main() -> Result<()> {
@@ -59,9 +62,9 @@ fn main() -> Result<()> {
 
     let mut tables = table::Tables::default();
     let mut panels = Vec::new();
-    for (room, rays) in ROOMS {
+    for (room, meshes) in ROOMS {
         let mut z = Vec::new();
-        for (more, rays) in MORE_ELEMENTS.into_iter().zip(rays) {
+        for &(more, rays) in meshes {
             let trial = compare(&scenes, room, more, rays).with_context(|| format!("{room}, {more} more elements"))?;
             tables.add(&trial);
             z.push((0..trial.comparison.points.len()).map(|i| trial.comparison.z(i, LUMINANCE)).collect());
@@ -79,16 +82,19 @@ fn compare(scenes: &Path, room: &'static str, more: u64, rays: u64) -> Result<Tr
     let start = std::time::Instant::now();
     let scene = read_scene(&scenes.join(room).with_extension("glb"), &ImportOptions::default())?;
     let problem = Problem::new(scene, Resolution::Extra(more))?;
-    let points = reference::read(&scenes.join("ref").join(room).with_extension("npz"))?;
-    let mut comparison = Comparison::new(points, &problem)?;
+    let reference = reference::read(&scenes.join("ref").join(room).with_extension("npz"))?;
+    let mut comparison = Comparison::new(reference.good, &problem)?;
+    let mut dark = Comparison::new(reference.dark, &problem)?;
     let mut light = vec![(0.0, 0.0); problem.mesh.len()];
-    let mut rays_in_all = 0;
+    let (mut rays_in_all, mut back_face) = (0, 0.0);
     for seed in SEEDS {
         let settings = Settings { seed, budget: Budget::Rays(rays), replicates: REPLICATES, ..Settings::default() };
         let mut solver = StochasticJacobi::new(&problem, settings)?;
         let solution = run(&mut solver, &problem, |_| ControlFlow::Continue(()));
         rays_in_all += solution.work.rays;
+        back_face += solution.balance.back_face / solution.balance.emitted / SEEDS.count() as f64;
         comparison.push(&solution);
+        dark.push(&solution);
         for ((mean, variance), (value, error)) in
             light.iter_mut().zip(solution.irradiance.iter().zip(&solution.std_error))
         {
@@ -103,5 +109,5 @@ fn compare(scenes: &Path, room: &'static str, more: u64, rays: u64) -> Result<Tr
         let verdict = if ratio.agrees() { "agrees" } else { "DISAGREES" };
         println!("  {name:9} {:.4} ± {:.4}  {verdict}", ratio.value, ratio.std_error);
     }
-    Ok(Trial { room, problem, comparison, light, rays: rays_in_all })
+    Ok(Trial { room, problem, comparison, dark, light, rays: rays_in_all, back_face })
 }

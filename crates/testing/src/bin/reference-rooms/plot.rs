@@ -6,7 +6,7 @@ use plotters::prelude::*;
 /// One histogram.
 pub struct Panel {
     pub title: &'static str,
-    /// z of every point, on the coarse and on the fine mesh.
+    /// z of every point, on the coarse mesh, on the fine mesh, and on others that are not drawn.
     pub z: Vec<Vec<f64>>,
 }
 

@@ -20,7 +20,8 @@ impl Default for Tables {
     fn default() -> Tables {
         let ratios = "room,elements,rays,of,points,channel,ratio,std_error,agrees\n".to_owned();
         let points = "room,elements,rays,median_element_cm,std_error,error_bar_ratio,mean_z,median_abs_z,share_beyond_3,\
-            steep_share_of_tail,steep_share_of_rest,rms_beyond_noise,rms_beyond_noise_without_tail\n";
+            steep_share_of_tail,steep_share_of_rest,rms_beyond_noise,rms_beyond_noise_without_tail,\
+            back_face,leaked\n";
         Tables { ratios, points: points.to_owned() }
     }
 }
@@ -79,8 +80,10 @@ fn points_line(trial: &Trial) -> String {
         steep(&rest),
         beyond_noise(&all),
         beyond_noise(&rest),
+        trial.back_face,
+        trial.dark.total(LUMINANCE) / comparison.total(LUMINANCE),
     ];
-    columns.map(|value| format!("{value:.4}")).join(",")
+    columns.map(|value| format!("{value:.5}")).join(",")
 }
 
 /// Longest edge of the element at point `i` [m].
