@@ -1,7 +1,7 @@
 //! The study `studies/reference-rooms`: three rooms, solved on coarse and fine meshes, against an independent renderer.
 //!
 //! `reference-rooms [SCENES] [OUT]` reads the rooms and references in the folder SCENES (`shared/scenes` beside the
-//! workspace or above it) and writes `ratios.csv`, `points.csv` and `z.svg` into the folder OUT (`studies/reference-rooms`).
+//! workspace or above it) and writes `result.csv`, `points.csv` and `z.svg` into the folder OUT (`studies/reference-rooms`).
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -58,7 +58,7 @@ fn main() -> Result<()> {
     };
     let out = arguments.next().unwrap_or_else(|| PathBuf::from("studies/reference-rooms"));
     let output = |name: &str| OutputFile::create(&out.join(name));
-    let (ratios, points, picture) = (output("ratios.csv")?, output("points.csv")?, output("z.svg")?);
+    let (ratios, points, picture) = (output("result.csv")?, output("points.csv")?, output("z.svg")?);
 
     let mut tables = table::Tables::default();
     let mut panels = Vec::new();
