@@ -3,6 +3,7 @@
 //! Every statistical test has a line in [`REGISTER`] with its number of comparisons; each comparison of the m in the table
 //! gets a significance level of `1e-6 / m` (Bonferroni). A test that is not in the table cannot be made.
 
+use crate::ensemble::comparisons;
 use crate::statistics::{p_of_chi2, p_of_t, p_of_z};
 
 /// Probability that one run of the whole suite raises a false alarm.
@@ -14,6 +15,10 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("uniform points of a sphere's element", 1),
     ("form factors of rectangles by local lines", 3),
     ("projections of a fair coin", 12),
+    ("furnace: box", 2 * comparisons(6)),
+    ("furnace: cubes", 2 * comparisons(9)),
+    ("furnace: labyrinth", 6 * comparisons(48)),
+    ("sphere", 2 * comparisons(8)),
 ];
 
 /// Significance level of a single comparison.
@@ -36,6 +41,14 @@ pub fn assert_z(test: &str, z: f64) {
 /// As [`assert_z`].
 pub fn assert_t(test: &str, t: f64, dof: f64) {
     judge(test, &format!("t = {t:.3} with {dof} degrees of freedom"), p_of_t(t, dof));
+}
+
+/// [`assert_t`] for one of several quantities that a test compares.
+///
+/// # Panics
+/// As [`assert_z`].
+pub fn assert_t_of(test: &str, quantity: &str, t: f64, dof: f64) {
+    judge(test, &format!("{quantity}: t = {t:.3} with {dof} degrees of freedom"), p_of_t(t, dof));
 }
 
 /// Holds a chi-square statistic against the budget.

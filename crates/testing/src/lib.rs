@@ -3,8 +3,10 @@
 //! A sampled result is judged by its own error bar, never by a tolerance chosen by eye.
 
 pub mod budget;
+pub mod ensemble;
 pub mod exact;
 pub mod projections;
 pub mod random;
 pub mod reference;
+pub mod scenes;
 pub mod statistics;
