@@ -19,6 +19,8 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("furnace: cubes", 2 * comparisons(9)),
     ("furnace: labyrinth", 6 * comparisons(48)),
     ("sphere", 2 * comparisons(8)),
+    ("box: 12 elements", comparisons(6)),
+    ("box: 48 elements", comparisons(6)),
 ];
 
 /// Significance level of a single comparison.

@@ -60,7 +60,8 @@ pub fn deviations(problem: &Problem, runs: &[Vec<Rgb>], exact: &[[f64; 3]]) -> V
         let channel = |run: &Vec<Rgb>| run.iter().map(|value| f64::from(value.to_array()[c])).collect();
         let runs: Vec<Vec<f64>> = runs.iter().map(channel).collect();
         let exact: Vec<f64> = exact.iter().map(|value| value[c]).collect();
-        all.iter().map(|projection| projection.deviation(&runs, &exact)).collect::<Vec<_>>()
+        let named = |d: Deviation| Deviation { name: format!("{} of channel {c}", d.name), ..d };
+        all.iter().map(|projection| named(projection.deviation(&runs, &exact))).collect::<Vec<_>>()
     };
     (0..3).flat_map(of_channel).collect()
 }

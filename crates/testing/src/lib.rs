@@ -3,6 +3,7 @@
 //! A sampled result is judged by its own error bar, never by a tolerance chosen by eye.
 
 pub mod budget;
+pub mod contour;
 pub mod ensemble;
 pub mod exact;
 pub mod projections;

@@ -70,11 +70,11 @@ mod tests {
     use isolux_core::mesh::Resolution;
     use isolux_core::scene::builtin::builtin;
 
-    /// Sixteen runs whose elements are all 1 with a noise of 10 %, and `bias`.
+    /// Thirty-two runs whose elements are all 1 with a noise of 10 %, and `bias`.
     fn runs(problem: &Problem, bias: f64) -> Vec<Vec<f64>> {
         let mut random = Random::new(11);
         let noisy = |_| 1.0 + bias + 0.1 * random.sign();
-        let values: Vec<f64> = (0..16 * problem.mesh.len()).map(noisy).collect();
+        let values: Vec<f64> = (0..32 * problem.mesh.len()).map(noisy).collect();
         values.chunks(problem.mesh.len()).map(<[f64]>::to_vec).collect()
     }
 
