@@ -18,6 +18,7 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("furnace: box", 2 * comparisons(6)),
     ("furnace: cubes", 2 * comparisons(9)),
     ("furnace: labyrinth", 6 * comparisons(48)),
+    ("furnace: cube with few lines", comparisons(6)),
     ("sphere", 2 * comparisons(8)),
     ("box: 12 elements", comparisons(6)),
     ("box: 48 elements", comparisons(6)),
