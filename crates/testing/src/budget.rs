@@ -4,6 +4,7 @@
 //! gets a significance level of `1e-6 / m` (Bonferroni). A test that is not in the table cannot be made.
 
 use crate::ensemble::comparisons;
+use crate::honesty;
 use crate::statistics::{p_of_chi2, p_of_t, p_of_z};
 
 /// Probability that one run of the whole suite raises a false alarm.
@@ -20,6 +21,9 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("furnace: labyrinth", 6 * comparisons(48)),
     ("furnace: cube with few lines", comparisons(6)),
     ("sphere", 2 * comparisons(8)),
+    ("honest error bars", 4 * honesty::COMPARISONS),
+    ("honest error bars with few lines", 1),
+    ("honest error bars over rounds", 1),
     ("box: 12 elements", comparisons(6)),
     ("box: 48 elements", comparisons(6)),
 ];

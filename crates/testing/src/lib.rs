@@ -6,6 +6,7 @@ pub mod budget;
 pub mod contour;
 pub mod ensemble;
 pub mod exact;
+pub mod honesty;
 pub mod mutants;
 pub mod projections;
 pub mod random;

@@ -55,6 +55,17 @@ pub fn sphere_answer(problem: &Problem) -> Exact {
     (0..mesh.len()).map(|e| std::array::from_fn(|c| channels[c][e])).collect()
 }
 
+/// The exact irradiances inside a sphere: the same everywhere.
+pub fn sphere_irradiance(problem: &Problem) -> Exact {
+    let mesh = &problem.mesh;
+    let mean = |color: &dyn Fn(u32) -> Rgb| {
+        let weighted = |e| color(e).to_array().map(|v| f64::from(v) * f64::from(mesh.area(e)) / mesh.total_area());
+        mesh.elements().map(weighted).fold([0.0; 3], |sum, v| std::array::from_fn(|c| sum[c] + v[c]))
+    };
+    let (emission, reflectivity) = (mean(&|e| mesh.emission(e)), mean(&|e| mesh.reflectivity(e)));
+    vec![std::array::from_fn(|c| emission[c] / (1.0 - reflectivity[c])); mesh.len()]
+}
+
 /// Turns an object inside out.
 ///
 /// # Panics
