@@ -24,6 +24,11 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("honest error bars", 4 * honesty::COMPARISONS),
     ("honest error bars with few lines", 1),
     ("honest error bars over rounds", 1),
+    ("back face of a flipped wall", 1),
+    ("point light in a black box", comparisons(6)),
+    ("point light in a sphere", 2 * comparisons(8)),
+    ("spot in a black box", comparisons(6)),
+    ("sun on a floor", comparisons(1)),
     ("box: 12 elements", comparisons(6)),
     ("box: 48 elements", comparisons(6)),
 ];
