@@ -30,7 +30,8 @@ impl Rgb {
 
     /// Luminance (Y) of linear Rec. 709: the weight of each channel in lumens, lux and candela.
     pub fn luminance(self) -> f32 {
-        0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
+        // In double precision, for in single the three weights do not add up to one.
+        (0.2126 * f64::from(self.r) + 0.7152 * f64::from(self.g) + 0.0722 * f64::from(self.b)) as f32
     }
 
     pub fn max_channel(self) -> f32 {
