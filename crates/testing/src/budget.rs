@@ -29,6 +29,8 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("point light in a sphere", 2 * comparisons(8)),
     ("spot in a black box", comparisons(6)),
     ("sun on a floor", comparisons(1)),
+    ("black room", comparisons(6)),
+    ("bright sphere", comparisons(8)),
     ("box: 12 elements", comparisons(6)),
     ("box: 48 elements", comparisons(6)),
 ];
