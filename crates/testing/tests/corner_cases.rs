@@ -1,5 +1,7 @@
 //! Where solvers go wrong: nothing to do, hardly anything to do, and far too much.
 
+#![allow(clippy::unwrap_used)]
+
 use glam::{DVec3, Vec3};
 use isolux_core::math::Rgb;
 use isolux_core::mesh::Resolution;

@@ -1,5 +1,7 @@
 //! Error bars are honest: over many seeds, errors measured in their own error bars follow Student's t.
 
+#![allow(clippy::unwrap_used)]
+
 use isolux_core::math::hash::derive;
 use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
 use isolux_core::solvers::{Solver, StochasticJacobi};

@@ -1,5 +1,7 @@
 //! The same input gives the same bits, whatever the number of threads and however often a run was interrupted.
 
+#![allow(clippy::unwrap_used)]
+
 use isolux_core::run::run;
 use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
 use isolux_core::solvers::{Solver, StochasticJacobi};
