@@ -19,7 +19,7 @@ pub enum Resolution {
 impl Default for Resolution {
     /// Room for shadows on large walls without drowning in elements.
     fn default() -> Resolution {
-        Resolution::Extra(200_000)
+        Resolution::Extra(400_000)
     }
 }
 
