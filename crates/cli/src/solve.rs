@@ -12,6 +12,7 @@ use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
 use isolux_core::sampling::address::Address;
 use isolux_core::solvers::stochastic_jacobi::{Budget, Settings, StochasticJacobi};
+use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -48,7 +49,7 @@ pub struct Solve {
     #[arg(short, long = "output", value_name = "OUT")]
     outputs: Vec<PathBuf>,
 
-    /// Number of elements to aim at, like 50000 or 1e6 [default: one for each side of a triangle, and 200k more]
+    /// Number of elements to aim at, like 50000 or 1e6 [default: one for each side of a triangle, and 400k more]
     #[arg(long, value_name = "N", value_parser = parse_count, conflicts_with = "max_edge")]
     elements: Option<u64>,
 
@@ -79,6 +80,11 @@ pub struct Solve {
     #[arg(long, default_value = Address::default().name(), value_parser = parse_address)]
     address: Address,
 
+    /// From where on an element reflected light leaves: where-landed leaks four times less under walls and behind
+    /// frames, whole-element is the radiosity system to the letter
+    #[arg(long, default_value = Leaving::default().name(), value_parser = parse_leaving)]
+    leaving: Leaving,
+
     #[command(flatten)]
     picture: PictureArguments,
 
@@ -101,6 +107,11 @@ pub struct Solve {
 fn parse_address(text: &str) -> Result<Address, String> {
     let found = Address::ALL.into_iter().find(|address| address.name() == text);
     found.ok_or_else(|| format!("it is one of {}", Address::ALL.map(Address::name).join(", ")))
+}
+
+fn parse_leaving(text: &str) -> Result<Leaving, String> {
+    let found = Leaving::ALL.into_iter().find(|leaving| leaving.name() == text);
+    found.ok_or_else(|| format!("it is one of {}", Leaving::ALL.map(Leaving::name).join(", ")))
 }
 
 fn parse_objects(text: &str) -> Result<usize, String> {
@@ -160,7 +171,7 @@ impl Solve {
             (None, Some(_)) => Budget::Endless,
             (None, None) => Budget::Heuristic,
         };
-        Settings { seed: self.seed, budget, replicates: self.replicates, address: self.address }
+        Settings { seed: self.seed, budget, replicates: self.replicates, address: self.address, leaving: self.leaving }
     }
 
     fn solve(

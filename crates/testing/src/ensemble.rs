@@ -7,6 +7,7 @@ use isolux_core::math::Rgb;
 use isolux_core::run::run;
 use isolux_core::solvers::StochasticJacobi;
 use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -35,6 +36,11 @@ pub fn solve_until(problem: &Problem, settings: Settings, rays: u64) -> Solution
 /// Default settings but for the number of rays.
 pub fn with_rays(rays: u64) -> Settings {
     Settings { budget: Budget::Rays(rays), ..Settings::default() }
+}
+
+/// The same with elements of constant radiosity to the letter: what the dense systems solve.
+pub fn constant_elements(rays: u64) -> Settings {
+    Settings { leaving: Leaving::WholeElement, ..with_rays(rays) }
 }
 
 /// Runs that differ in nothing but their seeds, `0..runs`.

@@ -5,12 +5,14 @@ use isolux_core::math::Rgb;
 use isolux_core::sampling::address::Address;
 use isolux_core::solvers::stochastic_jacobi::Settings;
 use isolux_testing::contour::convex_room_answer;
-use isolux_testing::ensemble::{Exact, assert_exact, ensemble, irradiances, radiosities, refutes_exact, with_rays};
+use isolux_testing::ensemble::{
+    Exact, assert_exact, constant_elements, ensemble, irradiances, radiosities, refutes_exact, with_rays,
+};
 use isolux_testing::mutants::{Fault, with_fault};
 use isolux_testing::scenes::{brighten, cut, furnace, furnace_answer, problem, scene, sphere_answer};
 
 fn box_refutes(mutant: Problem, exact: Exact) -> bool {
-    let runs = ensemble(&mutant, with_rays(30_000), 48);
+    let runs = ensemble(&mutant, constant_elements(30_000), 48);
     refutes_exact(&mutant, &irradiances(&runs), &exact)
 }
 
@@ -88,7 +90,7 @@ fn furnace_sees_the_bias_of_per_element_counters() {
     faces.for_each(|(m, rho)| m.reflectivity = Rgb::grey(rho));
     let problem = cut(furnace(room), 1200);
     let exact = furnace_answer(&problem);
-    let runs = |address| irradiances(&ensemble(&problem, Settings { address, ..with_rays(40_000) }, 200));
+    let runs = |address| irradiances(&ensemble(&problem, Settings { address, ..constant_elements(40_000) }, 200));
     assert_exact("furnace: cube with few lines", &problem, &runs(Address::PerIteration), &exact);
     assert!(refutes_exact(&problem, &runs(Address::PerElement), &exact));
 }

@@ -24,6 +24,13 @@ pub fn at(uv: Vec2, m: u16) -> u32 {
     i * (2 * m - i) + 2 * j + reversed
 }
 
+/// Barycentric coordinates within the cell at `uv`, in the order of its [`corners`].
+pub fn within(uv: Vec2, m: u16) -> Vec2 {
+    let (i, j, reversed) = row(at(uv, m), u32::from(m));
+    let offset = uv * f32::from(m) - Vec2::new(i as f32, j as f32);
+    if reversed { Vec2::ONE - offset } else { offset }
+}
+
 /// Barycentric coordinates of the corners of `cell`, in the orientation of the triangle.
 pub fn corners(cell: u32, m: u16) -> [Vec2; 3] {
     grid_corners(cell, m).map(|[i, j]| Vec2::new(i as f32, j as f32) / f32::from(m))
@@ -60,6 +67,18 @@ mod tests {
             for cell in 0..count(m) {
                 let [a, b, c] = corners(cell, m);
                 assert_eq!(at((a + b + c) / 3.0, m), cell, "m = {m}");
+            }
+        }
+    }
+
+    #[test]
+    fn coordinates_within_a_cell_lead_back_to_the_point() {
+        for m in [1, 2, 5, 32] {
+            for k in 0..200 {
+                let u = (k as f32 * 0.618).fract();
+                let uv = Vec2::new(u, (k as f32 * 0.414).fract() * (1.0 - u));
+                let ([a, b, c], local) = (corners(at(uv, m), m), within(uv, m));
+                assert!((a + local.x * (b - a) + local.y * (c - a) - uv).length() < 1e-5, "m = {m}, {uv}");
             }
         }
     }

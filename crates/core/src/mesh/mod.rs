@@ -186,6 +186,11 @@ impl ElementMesh {
         Some(side.first + offset + cells::at(uv, side.divisions))
     }
 
+    /// Barycentric coordinates within its element of the point `uv` of `triangle`.
+    pub fn within(&self, triangle: u32, uv: Vec2) -> Vec2 {
+        cells::within(uv, self.sides[triangle as usize].divisions)
+    }
+
     /// Barycentric coordinates on its triangle of the three corners of element `e`.
     pub fn corners(&self, e: u32) -> [Vec2; 3] {
         let place = self.place(e);

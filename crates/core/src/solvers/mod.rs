@@ -51,6 +51,8 @@ pub struct Part {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Landing {
     pub element: u32,
+    /// The cell of the element on which a line ended, see [`crate::transport::Footprint`]; of no meaning when gathering.
+    pub cell: u8,
     /// Its meaning is the solver's: a flux [lm] when shooting, a sum of radiosities [lm/m²] when gathering.
     pub light: [f32; 3],
 }

@@ -3,14 +3,14 @@
 //! Source i with flux `D_i` [lm] and luminance `s_i` shoots `n_i` of the N rays, `n_i ~ N s_i / S`; each carries
 //! `D_i S / (N s_i)`, luminance S / N. The expected flux that lands on j is `Σ_i D_i F_ij`. Unbiased. Cost: one ray each.
 
-use super::allocation::Allocation;
+use super::allocation::{Allocation, Share};
 use super::{Landing, Part};
 use crate::Problem;
 use crate::geometry::{Hit, Ray};
 use crate::math::Rgb;
 use crate::sampling::address::Counters;
 use crate::sampling::{Sample, Sequence};
-use crate::transport::{Arrival, Departure, arrivals, lamp};
+use crate::transport::{Arrival, Departure, Footprint, arrivals, lamp};
 
 /// Rays of one piece: large enough to hide the cost of handing out work, small enough to share well.
 pub const RAYS_PER_PIECE: u64 = 1 << 14;
@@ -38,19 +38,20 @@ pub(super) fn ray_range(piece: u64, rays: u64) -> std::ops::Range<u64> {
 }
 
 impl Sweep<'_> {
-    /// Shoots the rays of `piece`; `flux(i)` [lm] is what source i sends out. Landings are fluxes [lm].
+    /// Shoots the rays of `piece`; `source(i)` is the flux [lm] that source i sends out, and from
+    /// which part of it. Landings are fluxes [lm].
     ///
     /// Sources from the number of elements on are the scene's lights without extent.
-    pub fn shoot(&self, piece: u64, flux: impl Fn(u32) -> Rgb) -> Part {
+    pub fn shoot(&self, piece: u64, source: impl Fn(u32) -> (Rgb, Footprint)) -> Part {
         let range = ray_range(piece, self.allocation.rays());
         let luminance = self.total / self.allocation.rays() as f64;
         let mut part = Part { rays: range.end - range.start, ..Part::default() };
         part.landings.reserve(part.rays as usize);
         let mut batch = Batch::default();
         for share in self.allocation.shares(range) {
-            let source_flux = flux(share.source);
+            let (source_flux, footprint) = source(share.source);
             let color = source_flux * (luminance / f64::from(source_flux.luminance())) as f32;
-            self.depart(share.source, share.before, share.count, |ray| {
+            self.depart(share, footprint, |ray| {
                 batch.push(ray, color);
                 if batch.rays.len() == BATCH {
                     batch.land(self.problem, luminance, &mut part);
@@ -61,12 +62,13 @@ impl Sweep<'_> {
         part
     }
 
-    /// Hands the next `count` rays of `source` after `before` others to `each`.
-    fn depart(&self, source: u32, before: u32, count: u32, mut each: impl FnMut(Ray)) {
+    /// Hands the rays of `share` to `each`.
+    fn depart(&self, share: Share, footprint: Footprint, mut each: impl FnMut(Ray)) {
+        let Share { source, before, count, .. } = share;
         let elements = self.problem.mesh.len() as u32;
         let first = self.counters.next(source) + u64::from(before);
         if source < elements {
-            let departure = Departure::new(self.problem, source);
+            let departure = Departure::new(self.problem, source, footprint);
             for_samples(self.sequence, source, first, count, |sample| each(departure.ray(sample)));
         } else {
             let light = &self.problem.scene.lights[(source - elements) as usize];
@@ -106,7 +108,9 @@ impl Batch {
     /// Traces the rays, tallies where they land, and empties the batch.
     fn land(&mut self, problem: &Problem, luminance: f64, part: &mut Part) {
         arrivals(problem, &self.rays, &mut self.hits, |k, arrival| match arrival {
-            Arrival::Element(element) => part.landings.push(Landing { element, light: self.light[k].to_array() }),
+            Arrival::Element { element, cell } => {
+                part.landings.push(Landing { element, cell, light: self.light[k].to_array() });
+            }
             Arrival::BackFace => part.back_face += luminance,
             Arrival::Escaped => part.escaped += luminance,
         });

@@ -2,10 +2,11 @@
 //!
 //! The nearest surface such a line hits lies on element j with probability `F_ij`, the form factor (Nusselt 1928).
 
+use super::Footprint;
 use crate::Problem;
 use crate::geometry::Ray;
 use crate::math::Frame;
-use crate::math::warp::{square_to_cosine_hemisphere, square_to_triangle};
+use crate::math::warp::square_to_cosine_hemisphere;
 use crate::sampling::Sample;
 use glam::Vec2;
 
@@ -18,18 +19,20 @@ pub struct Departure<'a> {
     /// Barycentric coordinates of one corner, and the edges from it.
     corner: Vec2,
     edges: [Vec2; 2],
+    footprint: Footprint,
 }
 
 impl<'a> Departure<'a> {
-    pub fn new(problem: &'a Problem, element: u32) -> Departure<'a> {
+    /// Lines from the part of `element` that `footprint` covers.
+    pub fn new(problem: &'a Problem, element: u32, footprint: Footprint) -> Departure<'a> {
         let place = problem.mesh.place(element);
         let [a, b, c] = problem.mesh.corners(element);
-        Departure { problem, triangle: place.triangle, back: place.back, corner: a, edges: [b - a, c - a] }
+        Departure { problem, triangle: place.triangle, back: place.back, corner: a, edges: [b - a, c - a], footprint }
     }
 
     /// The local line that belongs to `sample`: its first two numbers choose the point, the others the direction.
     pub fn ray(&self, [x1, x2, x3, x4]: Sample) -> Ray {
-        let cell = square_to_triangle(Vec2::new(x1, x2));
+        let cell = self.footprint.point(Vec2::new(x1, x2));
         let uv = self.corner + cell.x * self.edges[0] + cell.y * self.edges[1];
         let (point, front) = self.problem.geometry.surface(self.triangle, uv);
         let normal = if self.back { -front } else { front };

@@ -4,8 +4,10 @@
 
 use super::to_rgb;
 use crate::math::Rgb;
+use crate::math::hash::mix;
 use crate::mesh::ElementMesh;
 use crate::solvers::Part;
+use crate::transport::{Footprint, Leaving};
 
 /// Where light on an element comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +27,7 @@ pub struct Landed {
     pub reflected: f64,
 }
 
-/// Flux on every element, 72 bytes each (84 in a scene with lights without extent).
+/// Flux on every element, 80 bytes each (92 in a scene with lights without extent).
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Light {
     lamps: Vec<Rgb>,
@@ -36,12 +38,18 @@ pub struct Light {
     active: Vec<u32>,
     /// What has landed in the running step.
     landed: Vec<[f64; 3]>,
+    /// Where light lies on each element, and where it has landed in the running step; empty if it lies on the whole element.
+    footprint: Vec<Footprint>,
+    fresh: Vec<Footprint>,
+    /// Landings marked so far: a source of random numbers.
+    marked: u64,
     /// In a step of few rays, the elements on which something has landed: late steps must not cost as much as early ones.
     touched: Option<Vec<u32>>,
 }
 
 impl Light {
-    pub fn new(elements: usize, has_lamps: bool) -> Light {
+    pub fn new(elements: usize, has_lamps: bool, leaving: Leaving) -> Light {
+        let tracked = if leaving == Leaving::WhereLanded { elements } else { 0 };
         let dark = || vec![Rgb::BLACK; elements];
         Light {
             lamps: if has_lamps { dark() } else { Vec::new() },
@@ -50,6 +58,9 @@ impl Light {
             unshot: dark(),
             active: Vec::new(),
             landed: vec![[0.0; 3]; elements],
+            footprint: vec![Footprint::EMPTY; tracked],
+            fresh: vec![Footprint::EMPTY; tracked],
+            marked: 0,
             touched: None,
         }
     }
@@ -60,6 +71,9 @@ impl Light {
         }
         self.active.clear();
         self.landed.fill([0.0; 3]);
+        self.footprint.fill(Footprint::EMPTY);
+        self.fresh.fill(Footprint::EMPTY);
+        self.marked = 0;
     }
 
     /// Flux [lm] on element `e` straight from lights without extent.
@@ -75,6 +89,16 @@ impl Light {
     /// Radiosity [lm/m²] that element `e` reflects.
     pub fn reflected_radiosity(&self, mesh: &ElementMesh, e: u32) -> Rgb {
         mesh.reflectivity(e) * self.on(e) / mesh.area(e)
+    }
+
+    /// The part of element `e` on which its light lies.
+    pub fn footprint(&self, e: u32) -> Footprint {
+        self.footprint.get(e as usize).copied().unwrap_or(Footprint::WHOLE)
+    }
+
+    /// Radiosity [lm/m²] that a line sees which meets `cell` of element `e`.
+    pub fn seen_radiosity(&self, mesh: &ElementMesh, e: u32, cell: u8) -> Rgb {
+        self.reflected_radiosity(mesh, e) * self.footprint(e).density(cell)
     }
 
     /// Flux [lm] that element `e` has yet to shoot.
@@ -113,6 +137,23 @@ impl Light {
         }
     }
 
+    /// Notes where in the running shooting step light has landed.
+    pub fn mark(&mut self, part: &Part) {
+        if !self.fresh.is_empty() {
+            for landing in &part.landings {
+                self.marked += 1;
+                self.fresh[landing.element as usize].add(landing.cell, mix(self.marked));
+            }
+        }
+    }
+
+    /// Joins where light has landed in the running step to where it lay before.
+    fn settle(&mut self, e: usize) {
+        if let (Some(footprint), Some(fresh)) = (self.footprint.get_mut(e), self.fresh.get_mut(e)) {
+            footprint.join(std::mem::take(fresh), mix(self.marked ^ e as u64));
+        }
+    }
+
     /// The unshot flux has been shot.
     pub fn spend_unshot(&mut self) {
         self.active.drain(..).for_each(|e| self.unshot[e as usize] = Rgb::BLACK);
@@ -138,6 +179,7 @@ impl Light {
     fn reflect_element(&mut self, mesh: &ElementMesh, origin: Origin, e: u32, total: &mut Landed) {
         let k = e as usize;
         let landed = std::mem::take(&mut self.landed[k]);
+        self.settle(k);
         if landed == [0.0; 3] {
             return;
         }
@@ -159,6 +201,7 @@ impl Light {
     /// Ends a regular iteration: what has landed is another estimate of all reflected light, averaged in with weight `share`.
     pub fn average_in(&mut self, share: f32) {
         self.touched = None;
+        (0..self.landed.len()).for_each(|e| self.settle(e));
         for (flux, landed) in self.indirect.iter_mut().zip(&mut self.landed) {
             *flux = *flux * (1.0 - share) + to_rgb(&std::mem::take(landed)) * share;
         }

@@ -13,6 +13,7 @@ use super::light::Light;
 use crate::Problem;
 use crate::math::Rgb;
 use crate::solvers::allocation::Allocation;
+use crate::transport::Footprint;
 
 /// The two variances of one kind of light, but for area and rays of the element: `V_s = shooting / A`, `V_g = gathering / n`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -55,7 +56,7 @@ impl Merging {
         }
         let exitance = if power > 0.0 { power_exitance / power } else { 0.0 };
         let (direct, indirect) = (mean_irradiance(problem, &light.direct), mean_irradiance(problem, &light.indirect));
-        let variance = radiosity_variance(problem, |e| light.reflected_radiosity(mesh, e));
+        let variance = radiosity_variance(problem, |e| (light.reflected_radiosity(mesh, e), light.footprint(e)));
         Merging {
             direct: Variances::new(direct, emission_ray_flux, direct * exitance),
             indirect: Variances::new(indirect, reflected_ray_flux, variance),
@@ -93,14 +94,15 @@ impl Merging {
     }
 }
 
-/// Variance over the scene's area of the luminance of `radiosity(e)` [lux²].
-fn radiosity_variance(problem: &Problem, radiosity: impl Fn(u32) -> Rgb) -> f64 {
+/// Variance over the scene's area of the luminance of `radiosity(e)` [lux²], which lies on a part of each element.
+fn radiosity_variance(problem: &Problem, radiosity: impl Fn(u32) -> (Rgb, Footprint)) -> f64 {
     let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
     for e in problem.mesh.elements() {
-        let (a, b) = (f64::from(problem.mesh.area(e)), f64::from(radiosity(e).luminance()));
+        let (radiosity, footprint) = radiosity(e);
+        let (a, b) = (f64::from(problem.mesh.area(e)), f64::from(radiosity.luminance()));
         area += a;
         sum += a * b;
-        sum_sq += a * b * b;
+        sum_sq += a * b * b * footprint.mean_square();
     }
     (sum_sq / area - (sum / area).powi(2)).max(0.0)
 }

@@ -11,6 +11,7 @@ use crate::sampling::address::{Address, Counters};
 use crate::solution::Balance;
 use crate::solvers::allocation::Allocation;
 use crate::solvers::{Part, gathering, shooting};
+use crate::transport::{Footprint, Leaving};
 use std::ops::Range;
 
 /// What the running step does.
@@ -77,7 +78,13 @@ impl Stage {
 }
 
 impl Relaxation {
-    pub fn new(problem: &Problem, address: Address, seed: u64, rays: u64, experience: &Experience) -> Relaxation {
+    pub fn new(
+        problem: &Problem,
+        (address, leaving): (Address, Leaving),
+        seed: u64,
+        rays: u64,
+        experience: &Experience,
+    ) -> Relaxation {
         let (elements, lights) = (problem.mesh.len(), problem.scene.lights.len());
         let mut relaxation = Relaxation {
             seed,
@@ -89,7 +96,7 @@ impl Relaxation {
             allocation: Allocation::default(),
             address,
             counters: address.counters(elements + lights),
-            light: Light::new(elements, lights > 0),
+            light: Light::new(elements, lights > 0, leaving),
             shot: 0.0,
             emission_ray_flux: 0.0,
             reflected_rays: 0,
@@ -205,14 +212,18 @@ impl Relaxation {
         let (counters, allocation) = (&self.counters, &self.allocation);
         if self.stage == Stage::Gathering {
             let sweep = gathering::Sweep { problem, sequence, counters, allocation };
-            return sweep.gather(piece, |i, n, j| {
+            return sweep.gather(piece, |i, n, j, cell| {
                 let [direct, indirect] = self.merging.weights(problem.mesh.area(i), n);
-                (problem.mesh.emission(j) * direct + self.light.reflected_radiosity(&problem.mesh, j) * indirect)
+                (problem.mesh.emission(j) * direct + self.light.seen_radiosity(&problem.mesh, j, cell) * indirect)
                     / n as f32
             });
         }
         let sweep = shooting::Sweep { problem, sequence, counters, allocation, total: self.shot };
-        sweep.shoot(piece, |i| self.flux(problem, self.stage, i))
+        let reflects = matches!(self.stage, Stage::Incremental | Stage::Regular);
+        sweep.shoot(piece, |i| {
+            let footprint = if reflects { self.light.footprint(i) } else { Footprint::WHOLE };
+            (self.flux(problem, self.stage, i), footprint)
+        })
     }
 
     /// Takes in the next part; after the last one of the step, prepares the next step.
@@ -220,6 +231,9 @@ impl Relaxation {
         self.pieces_absorbed += 1;
         self.rays_done += part.rays;
         self.light.land(&part);
+        if self.stage != Stage::Gathering {
+            self.light.mark(&part);
+        }
         if matches!(self.stage, Stage::Lamps | Stage::Emission | Stage::Incremental) {
             self.balance.escaped += part.escaped;
             self.balance.back_face += part.back_face;
