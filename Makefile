@@ -13,10 +13,12 @@ build:
 
 demo: build
 	@mkdir -p out
-	$(ISOLUX) solve office --time 30 -o out/office.png -o out/office.glb -o out/office.json -o out/office.isolux
+	$(ISOLUX) solve office --elements 200k --time 45 --objects 8 -o out/office.png -o out/office.glb -o out/office.json -o out/office.isolux
 	@echo
-	@echo "The picture is out/office.png, the lit model out/office.glb (any glTF viewer shows it),"
-	@echo "the report out/office.json; look from elsewhere with: $(ISOLUX) render out/office.isolux -o out/again.png"
+	@echo "out/office.png     the picture"
+	@echo "out/office.glb     the lit model, for any viewer of glTF"
+	@echo "out/office.json    the report: totals, balance, light on each object"
+	@echo "out/office.isolux  the solution; look again with: $(ISOLUX) render out/office.isolux -o out/again.png"
 
 test:
 	cargo test --release --locked --workspace
