@@ -24,7 +24,7 @@ test:
 	cargo test --release --locked --workspace
 
 bench:
-	cargo bench --locked --workspace
+	cargo bench --locked -p isolux-core --bench kernel
 
 lint:
 	cargo fmt --all --check
