@@ -52,7 +52,7 @@ impl Check {
 }
 
 fn flux(report: &SceneReport) -> f64 {
-    report.emitters.iter().map(|emitter| f64::from(emitter.flux.luminance())).sum()
+    report.emitters.iter().map(|emitter| emitter.flux.luminance_f64()).sum()
 }
 
 fn as_json(scene: &Scene, report: &SceneReport, units: &str) -> String {
@@ -106,7 +106,7 @@ fn in_words(scene: &Scene, report: &SceneReport, units: &str) -> String {
 fn emitters(report: &SceneReport) -> String {
     let total = flux(report);
     let mut emitters: Vec<(&str, f64)> =
-        report.emitters.iter().map(|e| (e.name.as_str(), f64::from(e.flux.luminance()))).collect();
+        report.emitters.iter().map(|e| (e.name.as_str(), e.flux.luminance_f64())).collect();
     emitters.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut table = Table::new(&[]);
     for (name, flux) in emitters.iter().take(MOST_EMITTERS) {

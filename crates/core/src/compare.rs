@@ -57,7 +57,7 @@ pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -
     let mut scores = Vec::new();
     for e in mesh.elements() {
         let element_area = f64::from(mesh.area(e));
-        let lux = [a, b].map(|s| f64::from(s.irradiance[e as usize].luminance()));
+        let lux = [a, b].map(|s| s.irradiance[e as usize].luminance_f64());
         let errors = [a, b].map(|s| f64::from(luminance_error(s.std_error[e as usize])));
         let (difference, deviation) = (lux[0] - lux[1], errors[0].hypot(errors[1]));
         area += element_area;
@@ -65,7 +65,7 @@ pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -
         sum_sq += element_area * difference.powi(2);
         variance += element_area * deviation.powi(2);
         for (power, solution) in power.iter_mut().zip([a, b]) {
-            *power += element_area * f64::from(solution.radiosity(problem, e).luminance());
+            *power += element_area * solution.radiosity(problem, e).luminance_f64();
         }
         let reflectivity = f64::from(mesh.reflectivity(e).max_channel());
         power_bound += element_area * reflectivity * (errors[0] + errors[1]);
@@ -104,8 +104,7 @@ fn same_problem(a: &Problem, b: &Problem) -> Result<(), Error> {
     if a.scene.hash() != b.scene.hash() {
         return Err(Error::NotComparable { what: "they are of different scenes (geometry, materials or lights)" });
     }
-    let same_cut = (0..a.scene.triangles.len() as u32).all(|t| a.mesh.divisions(t) == b.mesh.divisions(t));
-    if !same_cut {
+    if a.mesh.cut() != b.mesh.cut() {
         return Err(Error::NotComparable { what: "the scene is cut into different elements" });
     }
     Ok(())

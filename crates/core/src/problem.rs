@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::geometry::{self, Geometry};
-use crate::mesh::{ElementMesh, Resolution};
+use crate::mesh::{Cut, ElementMesh, Resolution};
 use crate::scene::Scene;
 
 /// A scene, cut into elements, ready to be traced.
@@ -23,12 +23,12 @@ impl Problem {
         Ok(Problem { scene, mesh, geometry })
     }
 
-    /// The same cut a solution was computed with, see [`ElementMesh::with_divisions`].
+    /// The same cut a solution was computed with, see [`ElementMesh::with_cut`].
     ///
     /// # Errors
-    /// Those of [`ElementMesh::with_divisions`].
-    pub fn with_divisions(scene: Scene, divisions: &[u16]) -> Result<Problem, Error> {
-        let mesh = ElementMesh::with_divisions(&scene, divisions)?;
+    /// Those of [`ElementMesh::with_cut`].
+    pub fn with_cut(scene: Scene, cut: &Cut) -> Result<Problem, Error> {
+        let mesh = ElementMesh::with_cut(&scene, cut)?;
         let geometry = geometry::for_scene(&scene);
         Ok(Problem { scene, mesh, geometry })
     }

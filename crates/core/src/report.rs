@@ -45,15 +45,15 @@ pub fn per_object(problem: &Problem, solution: &Solution) -> Vec<ObjectSummary> 
     for e in mesh.elements() {
         let irradiance = solution.irradiance[e as usize];
         let area = f64::from(mesh.area(e));
-        let lux = f64::from(irradiance.luminance());
+        let lux = irradiance.luminance_f64();
         let summary = &mut summaries[scene.triangles[mesh.triangle(e) as usize].object as usize];
         summary.elements += 1;
         summary.area += area;
         summary.min = summary.min.min(lux);
         summary.max = summary.max.max(lux);
-        summary.emitted += area * f64::from(mesh.emission(e).luminance());
+        summary.emitted += area * mesh.emission(e).luminance_f64();
         summary.incident += area * lux;
-        summary.reflected += area * f64::from((mesh.reflectivity(e) * irradiance).luminance());
+        summary.reflected += area * (mesh.reflectivity(e) * irradiance).luminance_f64();
     }
     summaries.retain(|s| s.elements > 0);
     summaries.iter_mut().for_each(|s| s.mean = s.incident / s.area);

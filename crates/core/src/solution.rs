@@ -75,7 +75,7 @@ pub fn relative_error(problem: &Problem, estimate: impl Fn(u32) -> (Rgb, Rgb)) -
         let a = f64::from(problem.mesh.area(e));
         let (irradiance, std_error) = estimate(e);
         area += a;
-        sum += a * f64::from(irradiance.luminance());
+        sum += a * irradiance.luminance_f64();
         sum_sq += a * f64::from(luminance_error(std_error)).powi(2);
     }
     (sum_sq / area).sqrt() / (sum / area)

@@ -6,14 +6,14 @@
 //!        6..8    version of the format            (little-endian, like all numbers)
 //!        8..16   length of the payload, unpacked
 //!       16..24   XXH3 of bytes 0..16 and of the packed payload
-//!       24..     payload: scene, divisions, solution (postcard encoding), packed with zlib
+//!       24..     payload: scene, cut, solution (postcard encoding), packed with zlib
 //! ```
 //!
-//! Elements are not stored: the same scene and divisions give the same ones ([`Problem::with_divisions`]).
+//! Elements are not stored: the same scene, cut the same way, has the same ones ([`Problem::with_cut`]).
 
 use crate::Error;
 use flate2::{Compression, read::ZlibDecoder, write::ZlibEncoder};
-use isolux_core::mesh::element_count;
+use isolux_core::mesh::Cut;
 use isolux_core::scene::Scene;
 use isolux_core::{Problem, Solution};
 use std::borrow::Cow;
@@ -21,7 +21,7 @@ use std::io::{Read, Write};
 use xxhash_rust::xxh3::Xxh3;
 
 const MAGIC: &[u8; 6] = b"ISOLUX";
-const VERSION: u16 = 1;
+const VERSION: u16 = 2;
 const HEADER: usize = 24;
 /// Deflate never packs more bytes than this into one (RFC 1951: 258 bytes in two bits).
 const HIGHEST_RATIO: u64 = 1032;
@@ -29,8 +29,7 @@ const HIGHEST_RATIO: u64 = 1032;
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Payload<'a> {
     scene: Cow<'a, Scene>,
-    /// Divisions of each triangle.
-    divisions: Vec<u16>,
+    cut: Cow<'a, Cut>,
     solution: Cow<'a, Solution>,
 }
 
@@ -39,10 +38,9 @@ struct Payload<'a> {
 /// # Errors
 /// [`Error::Invalid`] if `problem` and `solution` do not belong together or are not fit to be read again.
 pub fn write(problem: &Problem, solution: &Solution) -> Result<Vec<u8>, Error> {
-    let triangles = 0..problem.scene.triangles.len() as u32;
     let payload = Payload {
         scene: Cow::Borrowed(&problem.scene),
-        divisions: triangles.map(|t| problem.mesh.divisions(t)).collect(),
+        cut: Cow::Owned(problem.mesh.cut()),
         solution: Cow::Borrowed(solution),
     };
     check(".isolux output", &payload)?;
@@ -61,7 +59,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<(Problem, Solution), Error> {
         return Err(invalid(name, "payload", format!("{} bytes too many", rest.len())));
     }
     check(name, &payload)?;
-    let problem = Problem::with_divisions(payload.scene.into_owned(), &payload.divisions)?;
+    let problem = Problem::with_cut(payload.scene.into_owned(), &payload.cut)?;
     Ok((problem, payload.solution.into_owned()))
 }
 
@@ -108,16 +106,12 @@ fn unpack(name: &str, bytes: &[u8]) -> Result<Vec<u8>, Error> {
     Ok(unpacked)
 }
 
-/// Whether scene, divisions and solution can be used, and used together.
+/// Whether scene, cut and solution can be used, and used together.
 fn check(name: &str, payload: &Payload) -> Result<(), Error> {
-    let Payload { scene, divisions, solution } = payload;
+    let Payload { scene, cut, solution } = payload;
     scene.validate().map_err(|fault| invalid(name, &format!("scene/{}", fault.place), fault.what))?;
-    if divisions.len() != scene.triangles.len() {
-        let what = format!("{} numbers for {} triangles", divisions.len(), scene.triangles.len());
-        return Err(invalid(name, "divisions", what));
-    }
     // Known before the elements are made, so that a false number cannot ask for a huge mesh.
-    let elements = element_count(scene, divisions)?;
+    let elements = cut.element_count(scene).map_err(|e| invalid(name, "cut", e))?;
     for (what, values) in [("irradiance", &solution.irradiance), ("std_error", &solution.std_error)] {
         if values.len() != elements {
             let fault = format!("{} values for {elements} elements", values.len());
@@ -195,7 +189,7 @@ mod tests {
         assert!(message(&file[..20]).contains("cut off"));
         assert!(message(&file[..file.len() - 1]).contains("cut off"));
         let mut newer = file.clone();
-        newer[6] = 2;
+        newer[6] = VERSION as u8 + 1;
         assert!(message(&newer).contains("newer"));
         let mut damaged = file;
         damaged[100] ^= 1;
@@ -258,10 +252,10 @@ mod tests {
     }
 
     #[test]
-    fn false_divisions_are_refused_before_a_mesh_is_made() {
+    fn false_cuts_are_refused_before_a_mesh_is_made() {
         let (problem, solution) = fixture::lit_box();
-        let divisions = vec![30_000; problem.scene.triangles.len()];
-        let payload = Payload { scene: Cow::Owned(problem.scene), divisions, solution: Cow::Owned(solution) };
+        let cut = Cow::Owned(Cut::regular(&vec![30_000; problem.scene.triangles.len()]));
+        let payload = Payload { scene: Cow::Owned(problem.scene), cut, solution: Cow::Owned(solution) };
         let file = pack(&postcard::to_stdvec(&payload).unwrap()).unwrap();
         assert!(message(&file).contains("elements"));
     }

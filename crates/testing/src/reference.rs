@@ -151,7 +151,7 @@ impl Comparison {
     pub fn push(&mut self, solution: &Solution) {
         let with_luminance = |color: Rgb| {
             let [r, g, b] = color.to_array().map(f64::from);
-            [r, g, b, f64::from(color.luminance())]
+            [r, g, b, color.luminance_f64()]
         };
         let at = |&e: &u32| Irradiance {
             value: with_luminance(solution.irradiance[e as usize]),

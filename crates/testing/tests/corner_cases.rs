@@ -139,7 +139,7 @@ fn no_light_leaks_through_a_wall() {
     let is_black = |e: u32| solution.irradiance[e as usize].is_black();
     assert!(problem.mesh.elements().all(|e| dark(e) || !is_black(e)));
     // A ray that ends within rounding of the seam, one in a million, may be said to end on either side of it.
-    let flux = |e: u32| f64::from((solution.irradiance[e as usize] * problem.mesh.area(e)).luminance());
+    let flux = |e: u32| (solution.irradiance[e as usize] * problem.mesh.area(e)).luminance_f64();
     let leaked: f64 = problem.mesh.elements().filter(|&e| dark(e)).map(flux).sum();
     assert!(leaked < 1e-5 * solution.balance.emitted, "{leaked} lm");
     assert!(problem.mesh.elements().filter(|&e| dark(e) && !is_black(e)).count() < 3);

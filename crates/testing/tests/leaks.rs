@@ -33,7 +33,7 @@ fn leaked(leaving: Leaving, partition_x: f32) -> f64 {
         let place = problem.mesh.place(e);
         problem.mesh.corners(e).iter().all(|&uv| problem.geometry.surface(place.triangle, uv).0.x > partition_x + 1e-3)
     };
-    let flux = |e: u32| f64::from((solution.irradiance[e as usize] * problem.mesh.area(e)).luminance());
+    let flux = |e: u32| (solution.irradiance[e as usize] * problem.mesh.area(e)).luminance_f64();
     problem.mesh.elements().filter(|&e| is_beyond(e)).map(flux).sum::<f64>() / solution.balance.emitted
 }
 

@@ -30,8 +30,12 @@ impl Rgb {
 
     /// Luminance (Y) of linear Rec. 709: the weight of each channel in lumens, lux and candela.
     pub fn luminance(self) -> f32 {
-        // In double precision, for in single the three weights do not add up to one.
-        (0.2126 * f64::from(self.r) + 0.7152 * f64::from(self.g) + 0.0722 * f64::from(self.b)) as f32
+        self.luminance_f64() as f32
+    }
+
+    /// Luminance in double precision, for sums that must add up: in single, the three weights do not even add up to one.
+    pub fn luminance_f64(self) -> f64 {
+        0.2126 * f64::from(self.r) + 0.7152 * f64::from(self.g) + 0.0722 * f64::from(self.b)
     }
 
     pub fn max_channel(self) -> f32 {

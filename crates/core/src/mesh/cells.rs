@@ -12,23 +12,22 @@ pub fn count(m: u16) -> u32 {
 
 /// The cell at barycentric coordinates `uv`; coordinates on or slightly outside the border belong to the nearest cell.
 pub fn at(uv: Vec2, m: u16) -> u32 {
-    let m = u32::from(m);
-    if m == 1 {
-        return 0;
-    }
-    let (u, v) = (uv.x * m as f32, uv.y * m as f32);
-    let i = (u.max(0.0) as u32).min(m - 1);
-    let j = (v.max(0.0) as u32).min(m - 1 - i);
-    let over = (u - i as f32) + (v - j as f32) > 1.0;
-    let reversed = u32::from(over && i + j + 2 <= m);
-    i * (2 * m - i) + 2 * j + reversed
+    locate(uv, m).0
 }
 
-/// Barycentric coordinates within the cell at `uv`, in the order of its [`corners`].
-pub fn within(uv: Vec2, m: u16) -> Vec2 {
-    let (i, j, reversed) = row(at(uv, m), u32::from(m));
-    let offset = uv * f32::from(m) - Vec2::new(i as f32, j as f32);
-    if reversed { Vec2::ONE - offset } else { offset }
+/// As [`at`], with the barycentric coordinates within the cell, in the order of its [`corners`].
+pub fn locate(uv: Vec2, m: u16) -> (u32, Vec2) {
+    let m = u32::from(m);
+    if m == 1 {
+        return (0, uv);
+    }
+    let grid = uv * m as f32;
+    let i = (grid.x.max(0.0) as u32).min(m - 1);
+    let j = (grid.y.max(0.0) as u32).min(m - 1 - i);
+    let within = grid - Vec2::new(i as f32, j as f32);
+    let reversed = within.x + within.y > 1.0 && i + j + 2 <= m;
+    let cell = i * (2 * m - i) + 2 * j + u32::from(reversed);
+    (cell, if reversed { Vec2::ONE - within } else { within })
 }
 
 /// Barycentric coordinates of the corners of `cell`, in the orientation of the triangle.
@@ -77,7 +76,8 @@ mod tests {
             for k in 0..200 {
                 let u = (k as f32 * 0.618).fract();
                 let uv = Vec2::new(u, (k as f32 * 0.414).fract() * (1.0 - u));
-                let ([a, b, c], local) = (corners(at(uv, m), m), within(uv, m));
+                let (cell, local) = locate(uv, m);
+                let [a, b, c] = corners(cell, m);
                 assert!((a + local.x * (b - a) + local.y * (c - a) - uv).length() < 1e-5, "m = {m}, {uv}");
             }
         }

@@ -12,7 +12,7 @@ use crate::geometry::{Hit, Ray};
 use crate::math::Rgb;
 use crate::sampling::Sequence;
 use crate::sampling::address::Counters;
-use crate::transport::{Arrival, Departure, Footprint, arrivals};
+use crate::transport::{Arrival, Departure, Footprint, Spot, arrivals};
 
 /// One sweep of gathering, ready to be traced in pieces.
 pub struct Sweep<'a> {
@@ -23,9 +23,9 @@ pub struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// Traces the gathering rays of `piece`. `light(i, n, j, cell)` is what a ray adds to element i, of whose n rays it is one,
-    /// when it sees that cell of element j; landings are the sums over the rays of each element in this piece.
-    pub fn gather(&self, piece: u64, light: impl Fn(u32, u32, u32, u8) -> Rgb) -> Part {
+    /// Traces the gathering rays of `piece`. `light(i, n, j, spot)` is what a ray adds to element i, of whose n rays it is one,
+    /// when it sees that spot of element j; landings are the sums over the rays of each element in this piece.
+    pub fn gather(&self, piece: u64, light: impl Fn(u32, u32, u32, Spot) -> Rgb) -> Part {
         let range = ray_range(piece, self.allocation.rays());
         let mut part = Part { rays: range.end - range.start, ..Part::default() };
         let mut batch = Batch::default();
@@ -55,18 +55,18 @@ struct Batch {
 
 impl Batch {
     /// Traces the rays, adds what they see to the landings, and empties the batch.
-    fn look(&mut self, problem: &Problem, light: &impl Fn(u32, u32, u32, u8) -> Rgb, part: &mut Part) {
+    fn look(&mut self, problem: &Problem, light: &impl Fn(u32, u32, u32, Spot) -> Rgb, part: &mut Part) {
         arrivals(problem, &self.rays, &mut self.hits, |k, arrival| {
             let (element, rays) = self.receivers[k];
             let seen = match arrival {
-                Arrival::Element { element: seen, cell } => light(element, rays, seen, cell),
+                Arrival::Element { element: seen, spot } => light(element, rays, seen, spot),
                 Arrival::BackFace | Arrival::Escaped => Rgb::BLACK,
             };
             match part.landings.last_mut() {
                 Some(landing) if landing.element == element => {
                     landing.light = (Rgb::from(landing.light) + seen).to_array()
                 }
-                _ => part.landings.push(Landing { element, cell: 0, light: seen.to_array() }),
+                _ => part.landings.push(Landing { element, spot: Spot::default(), light: seen.to_array() }),
             }
         });
         self.rays.clear();

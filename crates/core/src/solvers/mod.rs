@@ -9,6 +9,7 @@ pub mod stochastic_jacobi;
 
 pub use stochastic_jacobi::StochasticJacobi;
 
+use crate::transport::Spot;
 use crate::{Problem, Solution};
 use std::ops::Range;
 
@@ -51,8 +52,8 @@ pub struct Part {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Landing {
     pub element: u32,
-    /// The cell of the element on which a line ended, see [`crate::transport::Footprint`]; of no meaning when gathering.
-    pub cell: u8,
+    /// Where on the element a line ended; of no meaning when gathering.
+    pub spot: Spot,
     /// Its meaning is the solver's: a flux [lm] when shooting, a sum of radiosities [lm/m²] when gathering.
     pub light: [f32; 3],
 }

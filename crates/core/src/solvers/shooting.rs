@@ -50,7 +50,7 @@ impl Sweep<'_> {
         let mut batch = Batch::default();
         for share in self.allocation.shares(range) {
             let (source_flux, footprint) = source(share.source);
-            let color = source_flux * (luminance / f64::from(source_flux.luminance())) as f32;
+            let color = source_flux * (luminance / source_flux.luminance_f64()) as f32;
             self.depart(share, footprint, |ray| {
                 batch.push(ray, color);
                 if batch.rays.len() == BATCH {
@@ -108,8 +108,8 @@ impl Batch {
     /// Traces the rays, tallies where they land, and empties the batch.
     fn land(&mut self, problem: &Problem, luminance: f64, part: &mut Part) {
         arrivals(problem, &self.rays, &mut self.hits, |k, arrival| match arrival {
-            Arrival::Element { element, cell } => {
-                part.landings.push(Landing { element, cell, light: self.light[k].to_array() });
+            Arrival::Element { element, spot } => {
+                part.landings.push(Landing { element, spot, light: self.light[k].to_array() });
             }
             Arrival::BackFace => part.back_face += luminance,
             Arrival::Escaped => part.escaped += luminance,

@@ -1,14 +1,14 @@
 //! Where lines arrive.
 
-use super::Footprint;
+use super::Spot;
 use crate::Problem;
 use crate::geometry::{Hit, Ray};
 
 /// What lies at the end of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
-    /// An element, and on which of its cells (see [`Footprint`]).
-    Element { element: u32, cell: u8 },
+    /// An element, and where on it.
+    Element { element: u32, spot: Spot },
     /// The back of a one-sided surface, which is black.
     BackFace,
     /// Nothing: the line leaves the scene.
@@ -24,9 +24,10 @@ pub fn arrivals(problem: &Problem, rays: &[Ray], hits: &mut Vec<Hit>, mut each: 
         let arrival = if hit.is_miss() {
             Arrival::Escaped
         } else {
-            problem.mesh.at(hit.triangle, hit.uv, hit.back).map_or(Arrival::BackFace, |element| Arrival::Element {
-                element,
-                cell: Footprint::cell_at(problem.mesh.within(hit.triangle, hit.uv)),
+            let located = problem.mesh.locate(hit.triangle, hit.uv, hit.back);
+            located.map_or(Arrival::BackFace, |(element, uv)| {
+                let spot = Spot::at(uv);
+                Arrival::Element { element, spot }
             })
         };
         each(k, arrival);

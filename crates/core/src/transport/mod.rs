@@ -6,5 +6,5 @@ pub mod lamp;
 pub mod local_line;
 
 pub use arrival::{Arrival, arrivals};
-pub use footprint::{Footprint, Leaving};
+pub use footprint::{Footprint, Leaving, Spot};
 pub use local_line::Departure;

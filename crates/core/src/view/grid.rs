@@ -1,7 +1,7 @@
-//! The corners of elements, numbered: the grid points of every side of every triangle.
+//! The corners of elements, numbered: the grid points of every side of every patch.
 //!
 //! A side with m divisions has (m + 1)(m + 2) / 2 grid points. Point (i, j) lies at the barycentric coordinates
-//! (i / m, j / m); row i holds the points (i, 0) ... (i, m - i). A point on an edge that two triangles share is counted
+//! (i / m, j / m) of the patch; row i holds the points (i, 0) ... (i, m - i). A point on an edge that two patches share is counted
 //! once for each of them: which of these are the same place on the same surface is for [`super::weld`] and
 //! [`super::crease`] to say.
 
@@ -11,24 +11,30 @@ use glam::Vec2;
 /// Numbers of grid points: side by side, row by row.
 #[derive(Clone, Debug)]
 pub struct Grid {
-    /// Number of the first grid point of each triangle's front, which those of the back follow; then the number in all.
+    /// Number of the first grid point of each patch's front, which those of the back follow; then the number in all.
     first: Vec<usize>,
 }
 
-/// One side of a triangle.
+/// One side of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Side {
-    pub triangle: u32,
+    pub patch: u32,
     pub back: bool,
 }
 
+impl Side {
+    pub fn triangle(self, mesh: &ElementMesh) -> u32 {
+        mesh.triangle_of_patch(self.patch)
+    }
+}
+
 impl Grid {
-    pub fn new(mesh: &ElementMesh, triangles: u32) -> Grid {
-        let mut first = Vec::with_capacity(triangles as usize + 1);
+    pub fn new(mesh: &ElementMesh) -> Grid {
+        let mut first = Vec::with_capacity(mesh.patches().len() + 1);
         let mut total = 0;
-        for t in 0..triangles {
+        for patch in mesh.patches() {
             first.push(total);
-            total += per_side(mesh.divisions(t)) * (1 + usize::from(mesh.is_two_sided(t)));
+            total += per_side(mesh.divisions(patch)) * backs(mesh, patch).len();
         }
         first.push(total);
         Grid { first }
@@ -41,27 +47,28 @@ impl Grid {
 
     /// Number of the grid point (i, j) of `side`.
     pub fn number(&self, mesh: &ElementMesh, side: Side, [i, j]: [u32; 2]) -> usize {
-        let m = mesh.divisions(side.triangle);
+        let m = mesh.divisions(side.patch);
         let row = i as usize * (2 * usize::from(m) + 3 - i as usize) / 2;
         let back = if side.back { per_side(m) } else { 0 };
-        self.first[side.triangle as usize] + back + row + j as usize
+        self.first[side.patch as usize] + back + row + j as usize
     }
 
     /// Numbers of the three corners of element `e`, in the orientation of the triangle's front.
     pub fn corners_of_element(&self, mesh: &ElementMesh, e: u32) -> [usize; 3] {
-        let Place { triangle, back, cell } = mesh.place(e);
-        let corners = cells::grid_corners(cell, mesh.divisions(triangle));
-        corners.map(|ij| self.number(mesh, Side { triangle, back }, ij))
+        let Place { patch, back, cell, .. } = mesh.place(e);
+        let corners = cells::grid_corners(cell, mesh.divisions(patch));
+        corners.map(|ij| self.number(mesh, Side { patch, back }, ij))
     }
 
     /// All sides, in the order of their grid points.
     pub fn sides<'a>(&self, mesh: &'a ElementMesh) -> impl Iterator<Item = Side> + use<'a> {
-        let triangles = 0..(self.first.len() - 1) as u32;
-        triangles.flat_map(|triangle| {
-            let backs: &[bool] = if mesh.is_two_sided(triangle) { &[false, true] } else { &[false] };
-            backs.iter().map(move |&back| Side { triangle, back })
-        })
+        mesh.patches().flat_map(|patch| backs(mesh, patch).iter().map(move |&back| Side { patch, back }))
     }
+}
+
+/// The sides that `patch` has: front, and perhaps back.
+fn backs(mesh: &ElementMesh, patch: u32) -> &'static [bool] {
+    if mesh.is_two_sided(mesh.triangle_of_patch(patch)) { &[false, true] } else { &[false] }
 }
 
 /// Number of grid points of a side with `m` divisions.
@@ -76,7 +83,7 @@ pub fn points(m: u16) -> impl Iterator<Item = [u32; 2]> {
     (0..=m).flat_map(move |i| (0..=m - i).map(move |j| [i, j]))
 }
 
-/// The pieces into which `m` divisions cut the three edges of a triangle, each from grid point to grid point.
+/// The pieces into which `m` divisions cut the three edges of a patch, each from grid point to grid point.
 pub fn border(m: u16) -> impl Iterator<Item = [[u32; 2]; 2]> {
     let m = u32::from(m);
     (0..m).flat_map(move |k| {
@@ -85,7 +92,12 @@ pub fn border(m: u16) -> impl Iterator<Item = [[u32; 2]; 2]> {
     })
 }
 
-/// Barycentric coordinates of a grid point.
+/// Barycentric coordinates on its patch of a grid point.
 pub fn barycentric([i, j]: [u32; 2], m: u16) -> Vec2 {
     Vec2::new(i as f32, j as f32) / f32::from(m)
+}
+
+/// Barycentric coordinates on its triangle of a grid point of `patch`.
+pub fn on_triangle(mesh: &ElementMesh, patch: u32, point: [u32; 2]) -> Vec2 {
+    mesh.on_triangle(patch, barycentric(point, mesh.divisions(patch)))
 }

@@ -1,4 +1,4 @@
-//! No seam and no crack where triangles with different divisions meet.
+//! No seam and no crack where patches with different divisions meet.
 //!
 //! A T-vertex of one side lies between two vertices of the other. Values are interpolated linearly between vertices, so it
 //! would bend the light along the edge on its own side only, which shows as a seam across a flat wall. So it takes the
@@ -75,7 +75,7 @@ impl EdgePoints {
     }
 }
 
-/// A piece of a triangle's edge that no other side shares, between two keys: vertices or places.
+/// A piece of a patch's edge that no other side shares, between two keys: vertices or places.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     from: u32,
@@ -103,11 +103,11 @@ fn loose_pieces(
     let mesh = &problem.mesh;
     let mut pieces = Vec::new();
     for side in sides {
-        let m = mesh.divisions(side.triangle);
-        for ends in grid::border(m) {
+        for ends in grid::border(mesh.divisions(side.patch)) {
             let [a, b] = ends.map(|ij| vertices.of_grid_point(vertices.grid.number(mesh, side, ij)));
             let length = vertices.position(a).distance(vertices.position(b));
-            let front = problem.geometry.surface(side.triangle, grid::barycentric(ends[0], m)).1;
+            let uv = grid::on_triangle(mesh, side.patch, ends[0]);
+            let front = problem.geometry.surface(side.triangle(mesh), uv).1;
             let normal = if side.back { -front } else { front };
             pieces.push(Piece { from: key(a).min(key(b)), to: key(a).max(key(b)), normal, length });
         }

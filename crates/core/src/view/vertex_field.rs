@@ -7,7 +7,7 @@
 //! ([`super::seams`]). Area weights, not the inverse variances of the elements: a value that is low by chance has a small
 //! error bar as well, and would be believed too much.
 
-use super::grid::{self, Side};
+use super::grid::Side;
 use super::seams::EdgePoints;
 use super::vertices::Vertices;
 use super::{cover, seams, smooth};
@@ -45,17 +45,17 @@ impl VertexField {
         if back && !problem.mesh.is_two_sided(triangle) {
             return Rgb::BLACK;
         }
-        let m = problem.mesh.divisions(triangle);
-        let corners = cells::grid_corners(cells::at(uv, m), m);
-        let side = Side { triangle, back };
+        let (patch, uv) = problem.mesh.patch_at(triangle, uv);
+        let m = problem.mesh.divisions(patch);
+        let (cell, within) = cells::locate(uv, m);
+        let side = Side { patch, back };
         let value = |ij| {
             let number = self.vertices.grid.number(&problem.mesh, side, ij);
             self.irradiance[self.vertices.of_grid_point(number) as usize]
         };
-        let [a, b, c] = corners.map(value);
-        let [origin, along_u, along_v] = corners.map(|ij| grid::barycentric(ij, m) * f32::from(m));
-        let s = ((uv.x * f32::from(m) - origin.x) / (along_u.x - origin.x)).clamp(0.0, 1.0);
-        let t = ((uv.y * f32::from(m) - origin.y) / (along_v.y - origin.y)).clamp(0.0, 1.0 - s);
+        let [a, b, c] = cells::grid_corners(cell, m).map(value);
+        let s = within.x.clamp(0.0, 1.0);
+        let t = within.y.clamp(0.0, 1.0 - s);
         a + (b - a) * s + (c - a) * t
     }
 
@@ -118,6 +118,7 @@ fn vertex_mean(elements: &[u32], values: &[Rgb], weight: impl Fn(u32) -> f32) ->
 mod tests {
     use super::super::plastic;
     use super::*;
+    use crate::mesh::Cut;
     use crate::scene::{Material, Object, Scene, Triangle, Vertex};
     use crate::view::tests::solution;
 
@@ -138,7 +139,7 @@ mod tests {
     }
 
     fn field(scene: Scene, divisions: &[u16], irradiance: impl Fn(Vec3) -> f32) -> (Problem, VertexField) {
-        let problem = Problem::with_divisions(scene, divisions).unwrap();
+        let problem = Problem::with_cut(scene, &Cut::regular(divisions)).unwrap();
         let mean = |e: u32| {
             let at = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
             Rgb::grey(irradiance(problem.geometry.surface(problem.mesh.triangle(e), at).0))
@@ -238,7 +239,7 @@ mod tests {
         polygons.extend(sides.iter().map(|s| s.as_slice()));
         let inside = |p: Vec3| p.x > low && p.x < high && p.y > low && p.y < high && p.z < 0.1;
         let scene = scene(&polygons);
-        let problem = Problem::with_divisions(scene, &[&[16u16, 16][..], &[1; 10][..]].concat()).unwrap();
+        let problem = Problem::with_cut(scene, &Cut::regular(&[&[16u16, 16][..], &[1; 10][..]].concat())).unwrap();
         let share_lit = |e: u32| {
             let at =
                 |k| problem.geometry.surface(problem.mesh.triangle(e), problem.mesh.point(e, plastic::point(9, k))).0;

@@ -28,7 +28,7 @@ pub struct Vertices {
 impl Vertices {
     pub fn new(problem: &Problem) -> Vertices {
         let mesh = &problem.mesh;
-        let grid = Grid::new(mesh, problem.scene.triangles.len() as u32);
+        let grid = Grid::new(mesh);
         let (place_of_grid_point, normals, positions) = places(problem, &grid);
         let (of_grid_point, places) = split_at_creases(&place_of_grid_point, &normals, positions.len());
         let of_element = |e: u32| grid.corners_of_element(mesh, e).map(|g| of_grid_point[g]);
@@ -79,9 +79,9 @@ fn places(problem: &Problem, grid: &Grid) -> (Vec<u32>, Vec<Vec3>, Vec<Vec3>) {
     let mut places = Vec::with_capacity(grid.len());
     let mut normals = Vec::with_capacity(grid.len());
     for side in grid.sides(&problem.mesh) {
-        let m = problem.mesh.divisions(side.triangle);
-        for point in grid::points(m) {
-            let (position, normal) = problem.geometry.surface(side.triangle, grid::barycentric(point, m));
+        for point in grid::points(problem.mesh.divisions(side.patch)) {
+            let uv = grid::on_triangle(&problem.mesh, side.patch, point);
+            let (position, normal) = problem.geometry.surface(side.triangle(&problem.mesh), uv);
             places.push(weld.number(position));
             normals.push(if side.back { -normal } else { normal });
         }

@@ -339,6 +339,7 @@ fn camera_node(camera: &Camera, number: usize) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isolux_core::mesh::Cut;
     use isolux_core::scene::{Material, Scene, Triangle, Vertex};
     use isolux_core::solution::{Balance, Provenance, Work};
 
@@ -355,7 +356,7 @@ mod tests {
         scene.triangles =
             (0..).zip(halves).map(|(source, vertices)| Triangle { vertices, object: 0, source }).collect();
         scene.cameras.push(Camera::looking_at("eye", Vec3::Z, Vec3::ZERO, 1.0));
-        let problem = Problem::with_divisions(scene, divisions).unwrap();
+        let problem = Problem::with_cut(scene, &Cut::regular(divisions)).unwrap();
         let light = |e| Rgb::grey(light[usize::from(problem.mesh.place(e).back)]);
         let irradiance: Vec<Rgb> = problem.mesh.elements().map(light).collect();
         let provenance = Provenance {

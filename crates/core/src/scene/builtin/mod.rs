@@ -122,7 +122,7 @@ mod tests {
             let scene = builtin(entry.name).unwrap();
             let Expected { triangles, area, flux } = entry.expected;
             let report = check(&scene);
-            let found_flux: f64 = report.emitters.iter().map(|e| f64::from(e.flux.luminance())).sum();
+            let found_flux: f64 = report.emitters.iter().map(|e| e.flux.luminance_f64()).sum();
             let found = format!("{}: {} {} m² {found_flux} lm", entry.name, report.triangles, report.area);
             assert_eq!(report.triangles, triangles, "{found}");
             assert!((report.area - area).abs() < 1e-4 * area, "{found}");

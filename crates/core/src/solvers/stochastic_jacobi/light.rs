@@ -7,7 +7,7 @@ use crate::math::Rgb;
 use crate::math::hash::mix;
 use crate::mesh::ElementMesh;
 use crate::solvers::Part;
-use crate::transport::{Footprint, Leaving};
+use crate::transport::{Footprint, Leaving, Spot};
 
 /// Where light on an element comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,8 +58,8 @@ impl Light {
             unshot: dark(),
             active: Vec::new(),
             landed: vec![[0.0; 3]; elements],
-            footprint: vec![Footprint::EMPTY; tracked],
-            fresh: vec![Footprint::EMPTY; tracked],
+            footprint: vec![Footprint::WHOLE; tracked],
+            fresh: vec![Footprint::WHOLE; tracked],
             marked: 0,
             touched: None,
         }
@@ -71,8 +71,8 @@ impl Light {
         }
         self.active.clear();
         self.landed.fill([0.0; 3]);
-        self.footprint.fill(Footprint::EMPTY);
-        self.fresh.fill(Footprint::EMPTY);
+        self.footprint.fill(Footprint::WHOLE);
+        self.fresh.fill(Footprint::WHOLE);
         self.marked = 0;
     }
 
@@ -96,9 +96,9 @@ impl Light {
         self.footprint.get(e as usize).copied().unwrap_or(Footprint::WHOLE)
     }
 
-    /// Radiosity [lm/m²] that a line sees which meets `cell` of element `e`.
-    pub fn seen_radiosity(&self, mesh: &ElementMesh, e: u32, cell: u8) -> Rgb {
-        self.reflected_radiosity(mesh, e) * self.footprint(e).density(cell)
+    /// Radiosity [lm/m²] that a line sees which meets `spot` of element `e`.
+    pub fn seen_radiosity(&self, mesh: &ElementMesh, e: u32, spot: Spot) -> Rgb {
+        self.reflected_radiosity(mesh, e) * self.footprint(e).density(spot)
     }
 
     /// Flux [lm] that element `e` has yet to shoot.
@@ -113,7 +113,7 @@ impl Light {
 
     /// Luminous flux [lm] yet to be shot.
     pub fn unshot_total(&self) -> f64 {
-        self.active().map(|e| f64::from(self.unshot(e).luminance())).sum()
+        self.active().map(|e| self.unshot(e).luminance_f64()).sum()
     }
 
     /// What has landed on element `e` in the running step.
@@ -142,7 +142,7 @@ impl Light {
         if !self.fresh.is_empty() {
             for landing in &part.landings {
                 self.marked += 1;
-                self.fresh[landing.element as usize].add(landing.cell, mix(self.marked));
+                self.fresh[landing.element as usize].add(landing.spot, mix(self.marked));
             }
         }
     }
@@ -193,9 +193,9 @@ impl Light {
         let reflected = rho * to_rgb(&landed);
         self.unshot[k] += reflected;
         self.active.push(e);
-        let absorbed: [f64; 3] = std::array::from_fn(|c| landed[c] * (1.0 - f64::from(rho.to_array()[c])));
+        let absorbed: [f64; 3] = std::array::from_fn(|c| landed[c] - f64::from(reflected.to_array()[c]));
         total.absorbed += 0.2126 * absorbed[0] + 0.7152 * absorbed[1] + 0.0722 * absorbed[2];
-        total.reflected += f64::from(reflected.luminance());
+        total.reflected += reflected.luminance_f64();
     }
 
     /// Ends a regular iteration: what has landed is another estimate of all reflected light, averaged in with weight `share`.

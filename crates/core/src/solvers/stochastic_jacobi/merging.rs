@@ -50,9 +50,9 @@ impl Merging {
         // A line meets radiosity Be with probability E / Be: variance E Be, averaged over the emitted power.
         let (mut power, mut power_exitance) = (0.0, 0.0);
         for e in mesh.elements().filter(|&e| !mesh.emission(e).is_black()) {
-            let emitted = f64::from(mesh.emitted_flux(e).luminance());
+            let emitted = mesh.emitted_flux(e).luminance_f64();
             power += emitted;
-            power_exitance += emitted * f64::from(mesh.emission(e).luminance());
+            power_exitance += emitted * mesh.emission(e).luminance_f64();
         }
         let exitance = if power > 0.0 { power_exitance / power } else { 0.0 };
         let (direct, indirect) = (mean_irradiance(problem, &light.direct), mean_irradiance(problem, &light.indirect));
@@ -99,7 +99,7 @@ fn radiosity_variance(problem: &Problem, radiosity: impl Fn(u32) -> (Rgb, Footpr
     let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
     for e in problem.mesh.elements() {
         let (radiosity, footprint) = radiosity(e);
-        let (a, b) = (f64::from(problem.mesh.area(e)), f64::from(radiosity.luminance()));
+        let (a, b) = (f64::from(problem.mesh.area(e)), radiosity.luminance_f64());
         area += a;
         sum += a * b;
         sum_sq += a * b * b * footprint.mean_square();
@@ -109,7 +109,7 @@ fn radiosity_variance(problem: &Problem, radiosity: impl Fn(u32) -> (Rgb, Footpr
 
 /// Area-weighted mean irradiance [lux, luminance] of a `flux` [lm] on every element.
 fn mean_irradiance(problem: &Problem, flux: &[Rgb]) -> f64 {
-    flux.iter().map(|f| f64::from(f.luminance())).sum::<f64>() / problem.mesh.total_area()
+    flux.iter().map(|f| f.luminance_f64()).sum::<f64>() / problem.mesh.total_area()
 }
 
 #[cfg(test)]

@@ -32,13 +32,16 @@ pub const NAME: &str = "stochastic-jacobi";
 
 /// Rays of a step are numbered in 32 bits.
 const MOST_RAYS_EACH: u64 = u32::MAX as u64;
+/// More rays an element than this make more complete solutions, not larger ones: in each step light leaves an element from
+/// nine points at most (see [`crate::transport::footprint`]).
+const RAYS_PER_ELEMENT: u64 = 1000;
 
 /// How much work, and which random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
     pub seed: u64,
     pub budget: Budget,
-    /// Independent complete solutions in a round, from 8.
+    /// Independent complete solutions in a round, from 8; there are more if there are very many rays for each element.
     pub replicates: u32,
     pub address: Address,
     pub leaving: Leaving,
@@ -70,6 +73,8 @@ impl Default for Settings {
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct StochasticJacobi {
     settings: Settings,
+    /// Independent complete solutions in a round.
+    replicates_in_round: u32,
     /// Rays of each replicate of the running round.
     rays_each: u64,
     /// Rays of the whole run, if it has an end.
@@ -87,32 +92,27 @@ pub struct StochasticJacobi {
 
 impl StochasticJacobi {
     /// # Errors
-    /// [`Error::Parameter`] for fewer than 8 replicates or fewer rays than replicates.
+    /// [`Error::Parameter`] for fewer than 8 replicates or fewer rays than those.
     pub fn new(problem: &Problem, settings: Settings) -> Result<StochasticJacobi, Error> {
         let parameter = |name, value: u64, allowed| Err(Error::Parameter { name, value: value.to_string(), allowed });
         if settings.replicates < 8 {
             return parameter("replicates", settings.replicates.into(), "at least 8 are needed for an error bar");
         }
-        let replicates = u64::from(settings.replicates);
-        let (rays_each, rays_in_all) = match settings.budget {
-            Budget::Heuristic => {
-                let rays = budget::rays(&problem.mesh).min(MOST_RAYS_EACH * replicates);
-                (rays.div_ceil(replicates), Some(rays))
-            }
-            Budget::Rays(rays) if rays < replicates => {
+        let rays_in_all = match settings.budget {
+            Budget::Heuristic => Some(budget::rays(&problem.mesh)),
+            Budget::Rays(rays) if rays < u64::from(settings.replicates) => {
                 return parameter("rays", rays, "every replicate needs at least one ray, so ask for more");
             }
-            Budget::Rays(rays) if rays.div_ceil(replicates) > MOST_RAYS_EACH => {
-                return parameter(
-                    "rays",
-                    rays,
-                    "a replicate can count 2^32 rays, so ask for more replicates or fewer rays",
-                );
-            }
-            Budget::Rays(rays) => (rays.div_ceil(replicates), Some(rays)),
-            // A first round of a few rays for each element: a first answer soon, with its error bar.
-            Budget::Endless => ((4 * problem.mesh.len() as u64).div_ceil(replicates).max(1000), None),
+            Budget::Rays(rays) => Some(rays),
+            Budget::Endless => None,
         };
+        // A first round of a few rays for each element: a first answer soon, with its error bar.
+        let rays_in_round =
+            rays_in_all.unwrap_or((4 * problem.mesh.len() as u64).max(1000 * u64::from(settings.replicates)));
+        let most_each = most_rays_each(problem, settings.leaving);
+        let replicates_in_round =
+            rays_in_round.div_ceil(most_each).clamp(settings.replicates.into(), u32::MAX.into()) as u32;
+        let rays_each = rays_in_round.div_ceil(replicates_in_round.into());
         let experience = Experience::expected(problem);
         let relaxation = Relaxation::new(
             problem,
@@ -123,6 +123,7 @@ impl StochasticJacobi {
         );
         Ok(StochasticJacobi {
             settings,
+            replicates_in_round,
             rays_each,
             rays_in_all,
             replicates: Replicates::new(problem.mesh.len()),
@@ -137,7 +138,7 @@ impl StochasticJacobi {
 
     /// Whether the round that was asked for is complete, or there is no light at all.
     fn is_finished(&self) -> bool {
-        let complete = self.settings.budget != Budget::Endless && self.replicate == self.settings.replicates;
+        let complete = self.settings.budget != Budget::Endless && self.replicate == self.replicates_in_round;
         complete || self.is_dark()
     }
 
@@ -160,9 +161,9 @@ impl StochasticJacobi {
         if self.is_finished() {
             return;
         }
-        if self.settings.budget == Budget::Endless && self.replicates.count_in_round() == self.settings.replicates {
+        if self.settings.budget == Budget::Endless && self.replicates.count_in_round() == self.replicates_in_round {
             self.replicates.close_round();
-            self.rays_each = (2 * self.rays_each).min(MOST_RAYS_EACH);
+            self.rays_each = (2 * self.rays_each).min(most_rays_each(problem, self.settings.leaving));
         }
         let seed = derive(self.settings.seed, u64::from(self.replicate));
         self.relaxation.restart(problem, seed, self.rays_each, &self.experience);
@@ -180,7 +181,7 @@ impl StochasticJacobi {
             method: NAME.to_owned(),
             parameters: vec![
                 (name.to_owned(), value),
-                ("replicates".to_owned(), self.settings.replicates.to_string()),
+                ("replicates".to_owned(), self.replicates_in_round.to_string()),
                 ("sequence".to_owned(), "owen-sobol".to_owned()),
                 ("address".to_owned(), self.settings.address.name().to_owned()),
                 ("leaving".to_owned(), self.settings.leaving.name().to_owned()),
@@ -235,6 +236,14 @@ impl Solver for StochasticJacobi {
             unshot: self.relaxation.unshot_share(),
             rms_error: self.rms_error,
         }
+    }
+}
+
+/// Most rays of a complete solution.
+fn most_rays_each(problem: &Problem, leaving: Leaving) -> u64 {
+    match leaving {
+        Leaving::WhereLanded => (RAYS_PER_ELEMENT * problem.mesh.len() as u64).clamp(1000, MOST_RAYS_EACH),
+        Leaving::WholeElement => MOST_RAYS_EACH,
     }
 }
 

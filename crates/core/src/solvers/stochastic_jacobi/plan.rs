@@ -26,7 +26,7 @@ impl Experience {
     /// of what is emitted.
     pub fn expected(problem: &Problem) -> Experience {
         let mesh = &problem.mesh;
-        let weighted = |e| f64::from(mesh.area(e)) * f64::from(mesh.reflectivity(e).luminance());
+        let weighted = |e| f64::from(mesh.area(e)) * mesh.reflectivity(e).luminance_f64();
         let rho = (mesh.elements().map(weighted).sum::<f64>() / mesh.total_area()).clamp(0.0, 0.95);
         Experience { reflected_share: rho / (1.0 - rho) }
     }

@@ -168,7 +168,7 @@ impl Relaxation {
     /// Luminous flux [lm] of every source of `stage`.
     fn sources<'a>(&'a self, problem: &'a Problem, stage: Stage) -> Box<dyn Iterator<Item = (u32, f64)> + 'a> {
         let elements = problem.mesh.len() as u32;
-        let luminous_flux = move |i| (i, f64::from(self.flux(problem, stage, i).luminance()));
+        let luminous_flux = move |i| (i, self.flux(problem, stage, i).luminance_f64());
         match stage {
             Stage::Lamps => Box::new((elements..elements + problem.scene.lights.len() as u32).map(luminous_flux)),
             Stage::Incremental => Box::new(self.light.active().map(luminous_flux)),
@@ -212,9 +212,9 @@ impl Relaxation {
         let (counters, allocation) = (&self.counters, &self.allocation);
         if self.stage == Stage::Gathering {
             let sweep = gathering::Sweep { problem, sequence, counters, allocation };
-            return sweep.gather(piece, |i, n, j, cell| {
+            return sweep.gather(piece, |i, n, j, spot| {
                 let [direct, indirect] = self.merging.weights(problem.mesh.area(i), n);
-                (problem.mesh.emission(j) * direct + self.light.seen_radiosity(&problem.mesh, j, cell) * indirect)
+                (problem.mesh.emission(j) * direct + self.light.seen_radiosity(&problem.mesh, j, spot) * indirect)
                     / n as f32
             });
         }

@@ -1,0 +1,92 @@
+//! Cutting a scene into elements.
+
+use super::average::Averages;
+use super::cut::Cut;
+use super::slices::Slices;
+use super::{ElementMesh, Patch, Resolution, Surface, cells, morton, triangle};
+use crate::Error;
+use crate::scene::Scene;
+
+impl ElementMesh {
+    /// Cuts `scene` into elements as `resolution` asks.
+    ///
+    /// # Errors
+    /// [`Error::NoSurface`] without triangles, [`Error::TooManyElements`], [`Error::NotFinite`] for a material or texture that is not.
+    pub fn new(scene: &Scene, resolution: Resolution) -> Result<ElementMesh, Error> {
+        if scene.triangles.is_empty() {
+            return Err(Error::NoSurface);
+        }
+        ElementMesh::with_cut(scene, &resolution.cut(scene)?)
+    }
+
+    /// Cuts `scene` as it was cut before: what a saved solution remembers of its mesh.
+    ///
+    /// # Errors
+    /// As [`ElementMesh::new`]; [`Error::Parameter`] if `cut` is of another scene.
+    pub fn with_cut(scene: &Scene, cut: &Cut) -> Result<ElementMesh, Error> {
+        if scene.triangles.is_empty() {
+            return Err(Error::NoSurface);
+        }
+        let total = cut.element_count(scene)?;
+        let mut mesh = ElementMesh {
+            surfaces: Vec::with_capacity(cut.slices.len()),
+            patches: Vec::with_capacity(cut.divisions.len()),
+            patch: Vec::with_capacity(total),
+            reflectivity: Vec::with_capacity(total),
+            emission: Vec::with_capacity(total),
+        };
+        let mut divisions = cut.divisions.iter();
+        for (t, &slices) in cut.slices.iter().enumerate() {
+            let divisions = divisions.by_ref().take(slices.patch_count() as usize);
+            mesh.push_triangle(scene, t as u32, slices, divisions.copied());
+        }
+        let averages = Averages::new(scene);
+        for t in morton::order(scene) {
+            let Surface { first_patch, slices, .. } = mesh.surfaces[t as usize];
+            (first_patch..first_patch + slices.patch_count()).for_each(|patch| mesh.push_elements(&averages, patch));
+        }
+        mesh.check_finite()?;
+        Ok(mesh)
+    }
+
+    /// A triangle and its patches, in the order of the scene.
+    fn push_triangle(&mut self, scene: &Scene, t: u32, slices: Slices, divisions: impl Iterator<Item = u16>) {
+        let first_patch = self.patches.len() as u32;
+        let area = triangle::surface_area(scene, t);
+        for (k, divisions) in divisions.enumerate() {
+            let element_area = area * slices.area_share(k as u32) / f64::from(cells::count(divisions));
+            self.patches.push(Patch { triangle: t, first_element: 0, divisions, element_area: element_area as f32 });
+        }
+        let (two_sided, normal) = (scene.material_of(t).two_sided, triangle::normal(scene.corners(t)));
+        self.surfaces.push(Surface { first_patch, slices, two_sided, normal });
+    }
+
+    /// The elements of a patch, in the order of their numbers.
+    fn push_elements(&mut self, averages: &Averages, patch: u32) {
+        let first = self.patch.len();
+        let Patch { triangle, divisions, .. } = self.patches[patch as usize];
+        self.patches[patch as usize].first_element = first as u32;
+        for cell in 0..cells::count(divisions) {
+            let corners = cells::corners(cell, divisions).map(|uv| self.on_triangle(patch, uv));
+            let (reflectivity, emission) = averages.over_cell(triangle, corners);
+            self.patch.push(patch);
+            self.reflectivity.push(reflectivity);
+            self.emission.push(emission);
+        }
+        if self.is_two_sided(triangle) {
+            self.patch.extend_from_within(first..);
+            self.reflectivity.extend_from_within(first..);
+            self.emission.extend_from_within(first..);
+        }
+    }
+
+    fn check_finite(&self) -> Result<(), Error> {
+        for (what, values) in [("reflectivity", &self.reflectivity), ("emission", &self.emission)] {
+            if let Some(e) = values.iter().position(|c| !c.is_finite()) {
+                let value = values[e].to_array().into_iter().find(|v| !v.is_finite()).unwrap_or(f32::NAN);
+                return Err(Error::NotFinite { element: e as u32, what, value });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,134 @@
+//! How finely each triangle is cut.
+
+use super::cut::{Cut, MOST_ELEMENTS, sides};
+use super::slices::Slices;
+use super::triangle::{height, longest_edge, shortest_edge};
+use crate::Error;
+use crate::scene::Scene;
+use glam::{Vec2, Vec3};
+use std::f64::consts::FRAC_1_SQRT_2;
+
+/// How many elements, or how large.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Resolution {
+    /// As close to this number of elements as it comes, never fewer than one for each side of a triangle.
+    Elements(u64),
+    /// No element has an edge longer than this [m].
+    MaxEdge(f32),
+    /// One element for each side of every triangle, and this many more.
+    Extra(u64),
+}
+
+impl Default for Resolution {
+    /// Room for shadows on large walls without drowning in elements.
+    fn default() -> Resolution {
+        Resolution::Extra(400_000)
+    }
+}
+
+/// Cell numbers of one patch must fit into 32 bits, and slices into 16.
+const MOST_DIVISIONS: f64 = 30_000.0;
+
+impl Resolution {
+    /// How to cut `scene`.
+    ///
+    /// # Errors
+    /// [`Error::TooManyElements`]; [`Error::Parameter`] for zero elements or an edge that is not positive.
+    pub fn cut(self, scene: &Scene) -> Result<Cut, Error> {
+        match self {
+            Resolution::Elements(0) => {
+                Err(Error::Parameter { name: "elements", value: "0".into(), allowed: "ask for at least one element" })
+            }
+            Resolution::Elements(target) => cut_for_target(scene, target),
+            Resolution::Extra(more) => {
+                let least: u64 = (0..scene.triangles.len() as u32).map(|t| sides(scene, t)).sum();
+                cut_for_target(scene, least.saturating_add(more))
+            }
+            Resolution::MaxEdge(edge) if edge > 0.0 && edge.is_finite() => {
+                let edge = f64::from(edge);
+                let limited = |corners: [Vec3; 3]| divisions(longest_edge(corners) / edge);
+                let asked = elements(scene, edge, limited);
+                let longest = (0..scene.triangles.len() as u32).map(|t| longest_edge(scene.corners(t)));
+                if asked > MOST_ELEMENTS || longest.fold(0.0, f64::max) > MOST_DIVISIONS * edge {
+                    return Err(Error::TooManyElements { asked, limit: MOST_ELEMENTS });
+                }
+                Ok(cut(scene, edge, limited))
+            }
+            Resolution::MaxEdge(edge) => Err(Error::Parameter {
+                name: "max-edge",
+                value: edge.to_string(),
+                allowed: "the edge must be a positive length in metres",
+            }),
+        }
+    }
+}
+
+/// Bisects the edge length until the number of elements is as close below `target` as it gets.
+fn cut_for_target(scene: &Scene, target: u64) -> Result<Cut, Error> {
+    if target > MOST_ELEMENTS {
+        return Err(Error::TooManyElements { asked: target, limit: MOST_ELEMENTS });
+    }
+    let longest = (0..scene.triangles.len() as u32).map(|t| longest_edge(scene.corners(t))).fold(0.0, f64::max);
+    let (mut fine, mut coarse) = (longest / MOST_DIVISIONS, longest.max(f64::MIN_POSITIVE));
+    for _ in 0..40 {
+        let middle = (fine * coarse).sqrt();
+        if elements(scene, middle, |corners| economical(corners, middle)) > target {
+            fine = middle;
+        } else {
+            coarse = middle;
+        }
+    }
+    let cut = cut(scene, coarse, |corners| economical(corners, coarse));
+    cut.element_count(scene)?;
+    Ok(cut)
+}
+
+/// Cuts into slices about `edge` high, and every patch into as many divisions as `of_patch` says.
+fn cut(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16) -> Cut {
+    let slices: Vec<Slices> = (0..scene.triangles.len() as u32).map(|t| slices(scene.corners(t), edge)).collect();
+    let patches = slices.iter().enumerate().flat_map(|(t, &slices)| patches(scene.corners(t as u32), slices));
+    let divisions = patches.map(of_patch).collect();
+    Cut { slices, divisions }
+}
+
+/// Number of elements of that cut.
+fn elements(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16) -> u64 {
+    let of_triangle = |t: u32| {
+        let corners = scene.corners(t);
+        let of_side: u64 = patches(corners, slices(corners, edge)).map(|patch| u64::from(of_patch(patch)).pow(2)).sum();
+        of_side.saturating_mul(sides(scene, t))
+    };
+    (0..scene.triangles.len() as u32).map(of_triangle).fold(0, u64::saturating_add)
+}
+
+/// Slices as high as the shortest edge, or if that is much less than `edge`, such that each half of one has no edge longer
+/// than `edge`.
+fn slices(corners: [Vec3; 3], edge: f64) -> Slices {
+    let (shortest, length) = (shortest_edge(corners), longest_edge(corners));
+    let count = if shortest > FRAC_1_SQRT_2 * edge {
+        (length / shortest).floor()
+    } else {
+        (length / (edge * edge - shortest * shortest).sqrt()).ceil()
+    };
+    if length <= edge { Slices::WHOLE } else { Slices::across(corners, count.min(MOST_DIVISIONS) as u16) }
+}
+
+/// Corners of the patches of a triangle.
+fn patches([a, b, c]: [Vec3; 3], slices: Slices) -> impl Iterator<Item = [Vec3; 3]> {
+    let position = move |uv: Vec2| a + uv.x * (b - a) + uv.y * (c - a);
+    (0..slices.patch_count()).map(move |patch| slices.corners(patch).map(position))
+}
+
+/// `length / edge` for a well-shaped patch. A thin one gets about as many elements as squares of `edge` fit along it: cut by
+/// its length alone, a strip three edges long would become nine splinters.
+fn economical(corners: [Vec3; 3], edge: f64) -> u16 {
+    // The width is the length for a half square cut along its diagonal.
+    let (length, width) = (longest_edge(corners), 2.0 * height(corners));
+    let along = length / edge;
+    let across = (width / edge).max(1.0).min(along);
+    divisions((along * across).sqrt())
+}
+
+fn divisions(wanted: f64) -> u16 {
+    wanted.ceil().clamp(1.0, MOST_DIVISIONS) as u16
+}
