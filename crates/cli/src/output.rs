@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::numbers;
 use crate::progress::Display;
 use isolux_core::{Problem, Solution};
-use isolux_io::export::{self, ExportOptions, Exporter};
+use isolux_io::export::{self, ExportOptions, Exporter, LitScene};
 use isolux_io::files::OutputFile;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -101,13 +101,14 @@ impl Outputs {
         display: &mut Display,
         interrupt: &Interrupt,
     ) -> Result<Vec<Written>, Failure> {
+        let lit = LitScene::new(problem, solution);
         let mut written = Vec::new();
         let mut failed = None;
         let mut told = interrupt.is_asked();
         for (k, (path, format)) in self.list.iter().enumerate() {
             display.stage(&format!("writing {}", path.display()));
-            let bytes = (format.write)(problem, solution, options)
-                .map_err(|error| Failure::other(format!("{}: {error}", path.display())));
+            let bytes =
+                (format.write)(&lit, options).map_err(|error| Failure::other(format!("{}: {error}", path.display())));
             let done = bytes.and_then(|bytes| self.files.finish(k, &bytes).map(|()| bytes.len()));
             match done {
                 Ok(bytes) => written.push(Written { path: path.clone(), bytes }),

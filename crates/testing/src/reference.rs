@@ -1,12 +1,15 @@
 //! Irradiance at points of real rooms, computed by an independent renderer, and how solutions compare with it.
 //!
 //! A solution has one value for each element, the reference one for each point, so single points differ where the light
-//! changes within an element; the mean over many points is what both must agree on.
+//! changes within an element; the mean over many points is what both must agree on. The mean of an element that lies half
+//! behind another surface contains its dark half, though all good points lie on the other: between the elements, as pictures and
+//! models show it ([`VertexField`]), the light belongs to the open half.
 
 use anyhow::{Context, Result, ensure};
 use glam::{Vec2, Vec3};
 use isolux_core::math::Rgb;
 use isolux_core::math::moments::Moments;
+use isolux_core::view::VertexField;
 use isolux_core::{Problem, Solution};
 use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
@@ -25,6 +28,26 @@ pub const ELEMENT_ALLOWANCE: f64 = 0.005;
 pub struct Irradiance {
     pub value: [f64; 4],
     pub std_error: [f64; 4],
+}
+
+/// What of a solution is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Value {
+    /// The value of the element at the point.
+    OfElement,
+    /// The value at the point as it is shown, interpolated between elements.
+    AtPoint,
+}
+
+impl Value {
+    pub const ALL: [Value; 2] = [Value::OfElement, Value::AtPoint];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Value::OfElement => "element",
+            Value::AtPoint => "point",
+        }
+    }
 }
 
 /// Where the reference is known.
@@ -122,8 +145,12 @@ pub struct Comparison {
     pub points: Vec<Point>,
     /// The element at each point.
     pub elements: Vec<u32>,
-    /// For each solution its irradiance at each point.
+    /// The triangle at each point.
+    triangles: Vec<u32>,
+    /// For each solution the irradiance of the element at each point.
     runs: Vec<Vec<Irradiance>>,
+    /// For each solution the irradiance that is shown at each point.
+    shown: Vec<Vec<[f64; 4]>>,
 }
 
 impl Comparison {
@@ -135,20 +162,22 @@ impl Comparison {
         for (t, triangle) in problem.scene.triangles.iter().enumerate() {
             triangle_of[triangle.source as usize] = Some(t as u32);
         }
-        let element = |point: &Point| {
+        let place = |point: &Point| {
             let triangle = triangle_of.get(point.source as usize).copied().flatten();
             let triangle = triangle.with_context(|| format!("the scene has no triangle {}", point.source))?;
             let [a, b, c] = problem.scene.corners(triangle);
             let distance = (a + point.uv.x * (b - a) + point.uv.y * (c - a)).distance(point.position);
             ensure!(distance < 1e-4, "a point of triangle {} is {distance} m from its place", point.source);
-            problem.mesh.at(triangle, point.uv, false).context("an element has no front")
+            let element = problem.mesh.at(triangle, point.uv, false).context("an element has no front")?;
+            Ok((element, triangle))
         };
-        let elements = points.iter().map(element).collect::<Result<_>>()?;
-        Ok(Comparison { points, elements, runs: Vec::new() })
+        let places: Vec<(u32, u32)> = points.iter().map(place).collect::<Result<_>>()?;
+        let (elements, triangles) = places.into_iter().unzip();
+        Ok(Comparison { points, elements, triangles, runs: Vec::new(), shown: Vec::new() })
     }
 
-    /// Takes in one more solution; its random numbers must be independent of those before.
-    pub fn push(&mut self, solution: &Solution) {
+    /// Takes in one more solution, and how it is shown; its random numbers must be independent of those before.
+    pub fn push(&mut self, problem: &Problem, solution: &Solution, field: &VertexField) {
         let with_luminance = |color: Rgb| {
             let [r, g, b] = color.to_array().map(f64::from);
             [r, g, b, color.luminance_f64()]
@@ -158,16 +187,23 @@ impl Comparison {
             std_error: with_luminance(solution.std_error[e as usize]),
         };
         self.runs.push(self.elements.iter().map(at).collect());
+        let places = self.points.iter().zip(&self.triangles);
+        let shown = places.map(|(point, &triangle)| field.irradiance_at(problem, triangle, point.uv, false));
+        self.shown.push(shown.map(with_luminance).collect());
     }
 
     /// Ratio of the means over the points to which `belongs` says yes.
-    pub fn ratio(&self, channel: usize, belongs: impl Fn(&Point) -> bool) -> Ratio {
+    pub fn ratio(&self, of: Value, channel: usize, belongs: impl Fn(&Point) -> bool) -> Ratio {
         let chosen: Vec<usize> = (0..self.points.len()).filter(|&i| belongs(&self.points[i])).collect();
         let reference = |i: &usize| &self.points[*i].irradiance;
         let total: f64 = chosen.iter().map(|i| reference(i).value[channel]).sum();
         let variance: f64 = chosen.iter().map(|i| reference(i).std_error[channel].powi(2)).sum();
-        let ratio = |run: &Vec<Irradiance>| chosen.iter().map(|&i| run[i].value[channel]).sum::<f64>() / total;
-        let runs: Moments = self.runs.iter().map(ratio).collect();
+        let value = |run: usize, i: usize| match of {
+            Value::OfElement => self.runs[run][i].value[channel],
+            Value::AtPoint => self.shown[run][i][channel],
+        };
+        let ratio = |run: usize| chosen.iter().map(|&i| value(run, i)).sum::<f64>() / total;
+        let runs: Moments = (0..self.runs.len()).map(ratio).collect();
         let std_error = runs.std_error().hypot(variance.sqrt() / total).hypot(SHARED_ERROR);
         Ratio { value: runs.mean, std_error }
     }

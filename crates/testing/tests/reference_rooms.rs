@@ -8,22 +8,25 @@ use isolux_core::run::run;
 use isolux_core::scene::Scene;
 use isolux_core::solvers::StochasticJacobi;
 use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_core::view::VertexField;
 use isolux_io::import::{ImportOptions, read_scene};
-use isolux_testing::reference::{self, CHANNELS, Comparison, Ratio};
+use isolux_testing::reference::{self, CHANNELS, Comparison, Ratio, Value};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// Ratios of four solutions of `scene` to the reference, one for each channel. The same numbers in every run of the test.
-fn ratios(folder: &Path, scene: Scene) -> [Ratio; 4] {
+/// Ratios of four solutions of `scene` to the reference, for elements and points and each channel. The same numbers in every run of the test.
+fn ratios(folder: &Path, scene: Scene) -> Vec<(String, Ratio)> {
     let problem = Problem::new(scene, Resolution::Elements(20_000)).unwrap();
     let reference = reference::read(&folder.join("ref/cornell-box.npz")).unwrap();
     let mut comparison = Comparison::new(reference.good, &problem).unwrap();
     for seed in 1..=4 {
         let settings = Settings { seed, budget: Budget::Rays(2_000_000), replicates: 8, ..Settings::default() };
         let mut solver = StochasticJacobi::new(&problem, settings).unwrap();
-        comparison.push(&run(&mut solver, &problem, |_| ControlFlow::Continue(())));
+        let solution = run(&mut solver, &problem, |_| ControlFlow::Continue(()));
+        comparison.push(&problem, &solution, &VertexField::new(&problem, &solution));
     }
-    std::array::from_fn(|channel| comparison.ratio(channel, |_| true))
+    let each = Value::ALL.into_iter().flat_map(|value| (0..CHANNELS.len()).map(move |channel| (value, channel)));
+    each.map(|(value, c)| (format!("{value:?} {}", CHANNELS[c]), comparison.ratio(value, c, |_| true))).collect()
 }
 
 #[test]
@@ -33,12 +36,12 @@ fn the_cornell_box_agrees_with_an_independent_renderer_and_not_with_three_percen
         return;
     };
     let scene = read_scene(&folder.join("cornell-box.glb"), &ImportOptions::default()).unwrap();
-    for (ratio, channel) in ratios(&folder, scene.clone()).into_iter().zip(CHANNELS) {
-        assert!(ratio.agrees(), "{channel}: {} ± {}", ratio.value, ratio.std_error);
+    for (what, ratio) in ratios(&folder, scene.clone()) {
+        assert!(ratio.agrees(), "{what}: {} ± {}", ratio.value, ratio.std_error);
     }
     let mut brighter = scene;
     brighter.materials.iter_mut().for_each(|material| material.reflectivity = material.reflectivity * 1.03);
-    for (ratio, channel) in ratios(&folder, brighter).into_iter().zip(CHANNELS) {
-        assert!(!ratio.agrees(), "{channel}: {} ± {} hides the fault", ratio.value, ratio.std_error);
+    for (what, ratio) in ratios(&folder, brighter) {
+        assert!(!ratio.agrees(), "{what}: {} ± {} hides the fault", ratio.value, ratio.std_error);
     }
 }

@@ -54,7 +54,7 @@ impl Slices {
         let (near, far) = (Vec2::new(i, 0.0), Vec2::new(0.0, i + 1.0));
         let grid =
             if patch.is_multiple_of(2) { [near, Vec2::new(i + 1.0, 0.0), far] } else { [near, far, Vec2::new(0.0, i)] };
-        grid.map(|p| self.from_tip(p / f32::from(self.count)))
+        grid.map(|p| self.on_triangle(p / f32::from(self.count)))
     }
 
     /// The patch at barycentric coordinates `uv` of the triangle, and the barycentric coordinates on it, in the order of
@@ -63,7 +63,7 @@ impl Slices {
         if self.count == 1 {
             return (0, uv);
         }
-        let p = (self.to_tip(uv) * f32::from(self.count)).max(Vec2::ZERO);
+        let p = (self.along_edges(uv) * f32::from(self.count)).max(Vec2::ZERO);
         let i = ((p.x + p.y) as u32).min(u32::from(self.count) - 1);
         if i == 0 {
             return (0, p);
@@ -79,8 +79,8 @@ impl Slices {
         }
     }
 
-    /// From coordinates on the triangle to coordinates along the two edges that leave the tip.
-    fn to_tip(self, uv: Vec2) -> Vec2 {
+    /// Coordinates along the two edges that leave the tip, of a point of the triangle.
+    fn along_edges(self, uv: Vec2) -> Vec2 {
         let first = 1.0 - uv.x - uv.y;
         match self.tip {
             0 => uv,
@@ -89,7 +89,8 @@ impl Slices {
         }
     }
 
-    fn from_tip(self, p: Vec2) -> Vec2 {
+    /// Coordinates on the triangle of what lies at `p` along the two edges.
+    fn on_triangle(self, p: Vec2) -> Vec2 {
         let at_tip = 1.0 - p.x - p.y;
         match self.tip {
             0 => p,

@@ -4,7 +4,7 @@
 //! of the side. Luminances are weighted as in Rec. 709. A standard error that is not known is `nan`.
 
 use super::elements::{self, EMISSION, IRRADIANCE, Quantity, RADIOSITY, REFLECTIVITY, STD_ERROR};
-use super::{ExportOptions, cannot_encode};
+use super::{ExportOptions, LitScene, cannot_encode};
 use crate::Error;
 use isolux_core::{Problem, Solution};
 
@@ -16,7 +16,8 @@ const COLUMNS: [(Quantity, bool); 5] =
 ///
 /// # Errors
 /// None that a table in memory could meet.
-pub fn write(problem: &Problem, solution: &Solution, _: &ExportOptions) -> Result<Vec<u8>, Error> {
+pub fn write(lit: &LitScene, _: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let LitScene { problem, solution, .. } = lit;
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(header()).map_err(cannot_encode("csv"))?;
     for e in problem.mesh.elements() {
@@ -71,7 +72,7 @@ mod tests {
     #[test]
     fn the_table_reads_back_as_the_solution() {
         let (problem, solution) = fixture::lit_box();
-        let bytes = write(&problem, &solution, &ExportOptions::default()).unwrap();
+        let bytes = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
         let mut reader = csv::Reader::from_reader(&bytes[..]);
         let header = reader.headers().unwrap().clone();
         let column = |name: &str| header.iter().position(|n| n == name).expect(name);

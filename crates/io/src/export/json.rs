@@ -2,7 +2,7 @@
 //!
 //! Numbers that are not known are `null`. The hash of the scene is text, as it needs more digits than some readers keep.
 
-use super::{ExportOptions, cannot_encode};
+use super::{ExportOptions, LitScene, cannot_encode};
 use crate::Error;
 use isolux_core::report;
 use isolux_core::{Problem, Solution};
@@ -12,7 +12,8 @@ use serde_json::{Map, Value, json};
 ///
 /// # Errors
 /// None that a text in memory could meet.
-pub fn write(problem: &Problem, solution: &Solution, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let LitScene { problem, solution, .. } = lit;
     let summary = summary(problem, solution, &options.extras);
     let mut text = serde_json::to_vec_pretty(&summary).map_err(cannot_encode("json"))?;
     text.push(b'\n');
@@ -73,7 +74,7 @@ mod tests {
         let (problem, solution) = fixture::lit_box();
         let mut options = ExportOptions::default();
         options.extras.insert("seconds".into(), json!(1.5));
-        let text = write(&problem, &solution, &options).unwrap();
+        let text = write(&LitScene::new(&problem, &solution), &options).unwrap();
         let read: Value = serde_json::from_slice(&text).unwrap();
         assert_eq!(read["elements"], problem.mesh.len());
         assert_eq!((&read["seed"], &read["seconds"]), (&json!(u64::MAX), &json!(1.5)));

@@ -13,7 +13,9 @@ pub mod scene_glb;
 mod vtu;
 
 use crate::{Error, solution_file};
+use isolux_core::view::VertexField;
 use isolux_core::{Problem, Solution};
+use std::cell::OnceCell;
 use std::path::Path;
 
 /// One format a solution can be written in.
@@ -23,7 +25,26 @@ pub struct Exporter {
     pub extension: &'static str,
     /// What is in the file, in a few words.
     pub what: &'static str,
-    pub write: fn(&Problem, &Solution, &ExportOptions) -> Result<Vec<u8>, Error>,
+    pub write: fn(&LitScene, &ExportOptions) -> Result<Vec<u8>, Error>,
+}
+
+/// A problem and its solution, to be written; what several writers need is made once, when the first asks for it.
+#[derive(Debug)]
+pub struct LitScene<'a> {
+    pub problem: &'a Problem,
+    pub solution: &'a Solution,
+    field: OnceCell<VertexField>,
+}
+
+impl<'a> LitScene<'a> {
+    pub fn new(problem: &'a Problem, solution: &'a Solution) -> LitScene<'a> {
+        LitScene { problem, solution, field: OnceCell::new() }
+    }
+
+    /// The light as it is looked at.
+    pub fn field(&self) -> &VertexField {
+        self.field.get_or_init(|| VertexField::new(self.problem, self.solution))
+    }
 }
 
 /// All formats. A new one is a file in this folder and a line here.
@@ -31,7 +52,7 @@ pub const FORMATS: &[Exporter] = &[
     Exporter {
         extension: "isolux",
         what: "the whole solution with its scene, to be read again",
-        write: |problem, solution, _| solution_file::write(problem, solution),
+        write: |lit, _| solution_file::write(lit.problem, lit.solution),
     },
     Exporter { extension: "glb", what: "the lit scene, for any viewer of glTF", write: glb::write },
     Exporter { extension: "png", what: "a picture for a screen", write: picture::write_png },
@@ -105,7 +126,7 @@ mod tests {
     fn every_format_writes_the_same_bytes_each_time() {
         let (problem, solution) = fixture::lit_box();
         for format in FORMATS {
-            let write = || (format.write)(&problem, &solution, &ExportOptions::default()).unwrap();
+            let write = || (format.write)(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
             let bytes = write();
             assert!(!bytes.is_empty() && bytes == write(), "{}", format.extension);
         }

@@ -7,9 +7,8 @@
 //! and `summary`, the text of the `.json` file. Numbers are 32 bits wide.
 
 use super::elements::{self, EMISSION, IRRADIANCE, RADIOSITY, REFLECTIVITY, STD_ERROR};
-use super::{ExportOptions, cannot_encode, json};
+use super::{ExportOptions, LitScene, cannot_encode, json};
 use crate::Error;
-use isolux_core::{Problem, Solution};
 use npyz::{DType, WriteOptions, WriterBuilder};
 use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
@@ -21,7 +20,8 @@ const LONGEST_NAME: usize = 256;
 ///
 /// # Errors
 /// None that an archive in memory could meet.
-pub fn write(problem: &Problem, solution: &Solution, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let LitScene { problem, solution, .. } = lit;
     let (scene, mesh) = (&problem.scene, &problem.mesh);
     let n = mesh.len() as u64;
     let mut archive = Archive(zip::ZipWriter::new(Cursor::new(Vec::new())));
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn arrays_read_back_with_shape_and_values() {
         let (problem, solution) = fixture::lit_box();
-        let bytes = write(&problem, &solution, &ExportOptions::default()).unwrap();
+        let bytes = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
         let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
         let mut array = |name: &str| {
             let mut npy = Vec::new();

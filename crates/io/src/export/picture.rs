@@ -1,18 +1,17 @@
 //! A picture of the solution: tone-mapped as PNG, linear in cd/m² as OpenEXR.
 
-use super::ExportOptions;
 use super::image::{encode_exr, encode_png};
+use super::{ExportOptions, LitScene};
 use crate::Error;
 use isolux_core::view::{self, Exposure, ViewOptions};
-use isolux_core::{Problem, Solution};
 
-pub fn write_png(problem: &Problem, solution: &Solution, options: &ExportOptions) -> Result<Vec<u8>, Error> {
-    let picture = view::render(problem, solution, &view_options(options))?;
+pub fn write_png(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let picture = view::render_field(lit.problem, lit.field(), &view_options(options))?;
     encode_png(picture.width, picture.height, &picture.to_srgb8())
 }
 
-pub fn write_exr(problem: &Problem, solution: &Solution, options: &ExportOptions) -> Result<Vec<u8>, Error> {
-    let picture = view::render(problem, solution, &view_options(options))?;
+pub fn write_exr(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let picture = view::render_field(lit.problem, lit.field(), &view_options(options))?;
     encode_exr(picture.width, picture.height, &picture.luminance)
 }
 

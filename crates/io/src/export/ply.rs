@@ -6,7 +6,7 @@
 //! [lm/m²], and `object`, an index into the `comment object` lines.
 
 use super::elements::{self, IRRADIANCE, Quantity, RADIOSITY, STD_ERROR};
-use super::{ExportOptions, cannot_encode};
+use super::{ExportOptions, LitScene, cannot_encode};
 use crate::Error;
 use isolux_core::{Problem, Solution};
 
@@ -16,7 +16,8 @@ const FACE_QUANTITIES: [Quantity; 3] = [IRRADIANCE, STD_ERROR, RADIOSITY];
 ///
 /// # Errors
 /// [`Error::Invalid`] with more corners than 32 bits can number.
-pub fn write(problem: &Problem, solution: &Solution, _: &ExportOptions) -> Result<Vec<u8>, Error> {
+pub fn write(lit: &LitScene, _: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let LitScene { problem, solution, .. } = lit;
     let count = problem.mesh.len();
     if i32::try_from(3 * count).is_err() {
         return Err(cannot_encode("ply")(format!("{count} elements have too many corners for this format")));
@@ -81,7 +82,7 @@ mod tests {
     #[test]
     fn another_reader_finds_the_same_numbers() {
         let (problem, solution) = fixture::lit_box();
-        let file = write(&problem, &solution, &ExportOptions::default()).unwrap();
+        let file = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
         let ply = Parser::<DefaultElement>::new().read_ply(&mut &file[..]).unwrap();
         let (vertices, faces) = (&ply.payload["vertex"], &ply.payload["face"]);
         assert_eq!((vertices.len(), faces.len()), (3 * problem.mesh.len(), problem.mesh.len()));

@@ -5,8 +5,8 @@
 //! Numbers are appended to the XML as raw little-endian blocks, each after its length in 64 bits (VTK file formats,
 //! "XML file formats").
 
-use super::ExportOptions;
 use super::elements::{self, EMISSION, IRRADIANCE, RADIOSITY, REFLECTIVITY, STD_ERROR};
+use super::{ExportOptions, LitScene};
 use crate::Error;
 use isolux_core::{Problem, Solution};
 
@@ -17,7 +17,8 @@ const VTK_TRIANGLE: u8 = 5;
 ///
 /// # Errors
 /// None.
-pub fn write(problem: &Problem, solution: &Solution, _: &ExportOptions) -> Result<Vec<u8>, Error> {
+pub fn write(lit: &LitScene, _: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let LitScene { problem, solution, .. } = lit;
     let mesh = &problem.mesh;
     let count = mesh.len();
     let mut blocks = Blocks::default();
@@ -102,7 +103,7 @@ mod tests {
     #[test]
     fn offsets_in_the_xml_lead_to_the_numbers() {
         let (problem, solution) = fixture::lit_box();
-        let file = write(&problem, &solution, &ExportOptions::default()).unwrap();
+        let file = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
         let marker = "encoding=\"raw\">\n_";
         let appended = find(&file, marker) + marker.len();
         let xml = std::str::from_utf8(&file[..appended]).unwrap();

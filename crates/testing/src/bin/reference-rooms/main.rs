@@ -15,9 +15,10 @@ use isolux_core::run::run;
 use isolux_core::solution::luminance_error;
 use isolux_core::solvers::StochasticJacobi;
 use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_core::view::VertexField;
 use isolux_io::files::OutputFile;
 use isolux_io::import::{ImportOptions, read_scene};
-use isolux_testing::reference::{self, CHANNELS, Comparison, LUMINANCE};
+use isolux_testing::reference::{self, CHANNELS, Comparison, LUMINANCE, Value};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +27,7 @@ use std::path::{Path, PathBuf};
 const ROOMS: [(&str, &[(u64, u64)]); 3] = [
     ("cornell-box", &[(20_000, 8_000_000), (200_000, 16_000_000)]),
     ("living-room", &[(200_000, 8_000_000), (2_000_000, 18_000_000)]),
-    ("classroom", &[(200_000, 8_000_000), (2_000_000, 18_000_000), (20_000_000, 150_000_000)]),
+    ("classroom", &[(200_000, 8_000_000), (2_000_000, 18_000_000), (8_000_000, 50_000_000)]),
 ];
 /// One independent solution each.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
@@ -93,8 +94,9 @@ fn compare(scenes: &Path, room: &'static str, more: u64, rays: u64) -> Result<Tr
         let solution = run(&mut solver, &problem, |_| ControlFlow::Continue(()));
         rays_in_all += solution.work.rays;
         back_face += solution.balance.back_face / solution.balance.emitted / SEEDS.count() as f64;
-        comparison.push(&solution);
-        dark.push(&solution);
+        let field = VertexField::new(&problem, &solution);
+        comparison.push(&problem, &solution, &field);
+        dark.push(&problem, &solution, &field);
         for ((mean, variance), (value, error)) in
             light.iter_mut().zip(solution.irradiance.iter().zip(&solution.std_error))
         {
@@ -104,10 +106,11 @@ fn compare(scenes: &Path, room: &'static str, more: u64, rays: u64) -> Result<Tr
     }
     let (elements, seconds) = (problem.mesh.len(), start.elapsed().as_secs_f64());
     println!("{room}: {elements} elements, {:.0} million rays, {seconds:.0} s", rays_in_all as f64 / 1e6);
-    for (channel, name) in CHANNELS.iter().enumerate() {
-        let ratio = comparison.ratio(channel, |_| true);
+    for (of, (channel, name)) in Value::ALL.into_iter().flat_map(|of| CHANNELS.iter().enumerate().map(move |c| (of, c)))
+    {
+        let ratio = comparison.ratio(of, channel, |_| true);
         let verdict = if ratio.agrees() { "agrees" } else { "DISAGREES" };
-        println!("  {name:9} {:.4} ± {:.4}  {verdict}", ratio.value, ratio.std_error);
+        println!("  {:7} {name:9} {:.4} ± {:.4}  {verdict}", of.name(), ratio.value, ratio.std_error);
     }
     Ok(Trial { room, problem, comparison, dark, light, rays: rays_in_all, back_face })
 }

@@ -1,7 +1,7 @@
 //! The numbers of the study, as two tables: ratios of means, and what the single points are like.
 
 use crate::Trial;
-use isolux_testing::reference::{CHANNELS, LUMINANCE};
+use isolux_testing::reference::{CHANNELS, LUMINANCE, Value};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ pub struct Tables {
 
 impl Default for Tables {
     fn default() -> Tables {
-        let ratios = "room,elements,rays,of,points,channel,ratio,std_error,agrees\n".to_owned();
+        let ratios = "room,elements,rays,of,points,value,channel,ratio,std_error,agrees\n".to_owned();
         let points = "room,elements,rays,median_element_cm,std_error,error_bar_ratio,mean_z,median_abs_z,share_beyond_3,\
             steep_share_of_tail,steep_share_of_rest,rms_beyond_noise,rms_beyond_noise_without_tail,\
             back_face,leaked\n";
@@ -31,18 +31,20 @@ impl Tables {
         let points = &trial.comparison.points;
         let nodes: BTreeSet<&str> = points.iter().map(|p| p.node.as_str()).collect();
         let head = format!("{},{},{}", trial.room, trial.problem.mesh.len(), trial.rays);
-        let mut line = |of: &str, node: Option<&str>, channel: usize| {
+        let mut line = |of: &str, node: Option<&str>, value: Value, channel: usize| {
             let belongs = |name: &str| node.is_none_or(|node| node == name);
             let count = points.iter().filter(|p| belongs(&p.node)).count();
             if count >= FEWEST_POINTS {
-                let ratio = trial.comparison.ratio(channel, |p| belongs(&p.node));
+                let ratio = trial.comparison.ratio(value, channel, |p| belongs(&p.node));
                 let (name, agrees) = (CHANNELS[channel], ratio.agrees());
                 let numbers = format!("{:.5},{:.5},{agrees}", ratio.value, ratio.std_error);
-                let _ = writeln!(self.ratios, "{head},{of},{count},{name},{numbers}");
+                let _ = writeln!(self.ratios, "{head},{of},{count},{},{name},{numbers}", value.name());
             }
         };
-        (0..CHANNELS.len()).for_each(|channel| line("all", None, channel));
-        nodes.into_iter().for_each(|node| line(node, Some(node), LUMINANCE));
+        for value in Value::ALL {
+            (0..CHANNELS.len()).for_each(|channel| line("all", None, value, channel));
+            nodes.iter().for_each(|node| line(node, Some(node), value, LUMINANCE));
+        }
         let _ = writeln!(self.points, "{head},{}", points_line(trial));
     }
 }
