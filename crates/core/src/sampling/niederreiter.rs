@@ -121,6 +121,9 @@ mod tests {
     #[test]
     fn the_discrepancy_is_the_known_one() {
         let unit = |index, d| f64::from(MATRICES.fraction(index, d)) / 2f64.powi(32);
-        assert_l2_star(unit, &[(64, 0.014_683_479_416_136_15), (256, 0.004_591_569_426_374_87), (1024, 0.001_359_607_834_415_55)]);
+        assert_l2_star(
+            unit,
+            &[(64, 0.014_683_479_416_136_15), (256, 0.004_591_569_426_374_87), (1024, 0.001_359_607_834_415_55)],
+        );
     }
 }

@@ -132,6 +132,9 @@ mod tests {
     #[test]
     fn the_discrepancy_is_the_known_one() {
         let unit = |index, d| f64::from(MATRICES.fraction(index, d)) / 2f64.powi(32);
-        assert_l2_star(unit, &[(64, 0.014_896_763_517_805_48), (256, 0.005_123_310_002_770_82), (1024, 0.001_409_194_316_448_65)]);
+        assert_l2_star(
+            unit,
+            &[(64, 0.014_896_763_517_805_48), (256, 0.005_123_310_002_770_82), (1024, 0.001_409_194_316_448_65)],
+        );
     }
 }
