@@ -77,7 +77,7 @@ mod tests {
             let mut seen = vec![false; period as usize];
             for index in first..first + period {
                 let place = |cell, d: usize| {
-                    // Half of the smallest distance of points within a period keeps rounding away from the borders.
+                    // A point on a border must not be rounded to below it; 2^-40 is the nearest that others come.
                     cell * counts[d] + ((inverse(index, PRIMES[d]) + 1e-14) * counts[d] as f64) as u64
                 };
                 seen[(0..4).fold(0, place) as usize] = true;

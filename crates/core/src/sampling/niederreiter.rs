@@ -112,6 +112,7 @@ mod tests {
     #[test]
     fn every_block_is_a_net_of_the_published_quality() {
         assert_sequence_of_nets(&MATRICES, &[0, 0, 1, 3, 5]);
+        assert_points_differ(&MATRICES);
         // A single dimension is even after each power of 2^e.
         assert_every_dimension_is_even(&MATRICES, |d| IRREDUCIBLE[d].ilog2() * (10 / IRREDUCIBLE[d].ilog2()));
         let leading = |index, d, k| u64::from(MATRICES.fraction(index, d)) >> (32 - k);

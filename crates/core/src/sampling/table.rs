@@ -106,6 +106,7 @@ impl Eq for SequenceName {}
 mod tests {
     use super::*;
     use crate::sampling::Sample;
+    use crate::sampling::construction::quality::is_net;
     use serde::Deserialize;
     use serde::de::IntoDeserializer;
     use std::path::Path;
@@ -185,6 +186,42 @@ mod tests {
             ];
             for (k, a) in all.iter().enumerate() {
                 assert!(all[..k].iter().all(|b| a != b), "{}: block {k}", entry.name);
+            }
+        }
+    }
+
+    #[test]
+    fn randomised_blocks_remain_nets() {
+        // (base, t in four dimensions, m) of the digital sequences.
+        for (name, base, t, m) in [
+            ("owen-sobol", 2u32, 3, 8),
+            ("sobol", 2, 3, 8),
+            ("niederreiter", 2, 3, 8),
+            ("faure", 5, 0, 4),
+            ("generalised-faure", 5, 0, 4),
+        ] {
+            let n = base.pow(m) as usize;
+            for (seed, block) in [(1, 0), (2, 7), (3, 1 << 30)] {
+                let net = points(name.parse::<SequenceName>().unwrap().entry(), seed, 4, (block * n) as u64, n);
+                let leading =
+                    |index: u64, d: usize, k| (f64::from(net[index as usize][d]) * f64::from(base.pow(k))) as u64;
+                assert!(is_net(u64::from(base), t, m, 4, leading), "{name}, block {block}");
+            }
+        }
+    }
+
+    #[test]
+    fn dimensions_of_copies_are_as_even_as_the_first() {
+        // One number in each of 64 intervals, in every aligned block of 64 points.
+        for name in ["owen-sobol", "sobol"] {
+            let sequence = name.parse::<SequenceName>().unwrap().make(5);
+            for (dimension, block) in
+                [4, 9, 31, 32, 40, 1000].into_iter().flat_map(|d| [(d, 0u64), (d, 9), (d, 1 << 30)])
+            {
+                let place = |index: u64| (64.0 * sequence.number(8, 64 * block + index, dimension)) as u64;
+                let mut places: Vec<u64> = (0..64).map(place).collect();
+                places.sort_unstable();
+                assert!(places.into_iter().eq(0..64), "{name}, dimension {dimension}, block {block}");
             }
         }
     }

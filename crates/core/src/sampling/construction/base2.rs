@@ -96,6 +96,18 @@ pub mod tests {
         }
     }
 
+    /// Asserts that no two of the first 2^40 points are the same in single precision: the columns that the bits of the
+    /// index add, 24 rows of four dimensions, are linearly independent.
+    pub fn assert_points_differ(matrices: &Matrices) {
+        let mut basis: Vec<u128> = Vec::new();
+        for k in 0..40 {
+            let column = (0..4).fold(0, |x, d| x << 24 | u128::from(matrices.columns[d][k] >> 8));
+            let reduced = basis.iter().fold(column, |x, b| x.min(x ^ b));
+            assert!(reduced != 0, "column {k} is a sum of earlier ones");
+            basis.push(reduced);
+        }
+    }
+
     /// Asserts that in each dimension, blocks of `2^bits(d)` points hold one point in each interval of that many.
     pub fn assert_every_dimension_is_even(matrices: &Matrices, bits: impl Fn(usize) -> u32) {
         for d in 0..DIMENSIONS {
