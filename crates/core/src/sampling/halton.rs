@@ -2,8 +2,8 @@
 //!
 //! Halton, On the efficiency of certain quasi-random sequences of points in evaluating multi-dimensional integrals, Numerische
 //! Mathematik 2, 1960: coordinate d of point n is the radical inverse of n in the d-th prime base. Rotated independently
-//! for each stream and dimension (Cranley & Patterson 1976): unbiased. 32 dimensions of its own; the large bases of the late ones
-//! need many points to be even. Cost: one multiplication for each digit of the index in each base.
+//! for each stream and dimension (Cranley & Patterson 1976): unbiased. 32 dimensions of its own; the large bases of the late
+//! ones need many points to be even. Cost: one multiplication for each digit of the index in each base.
 
 use super::construction::radical_inverse::{PRIMES, radical_inverse, rotate};
 use super::construction::stream_key::StreamKey;

@@ -1,8 +1,8 @@
 //! Niederreiter's points in base 2 with a digital shift.
 //!
 //! Niederreiter, Low-discrepancy and low-dispersion sequences, J. Number Theory 30, 1988, as implemented by Bratley, Fox &
-//! Niederreiter, Implementation and tests of low-discrepancy sequences, ACM TOMACS 2, 1992, section 3.3. Let p be the irreducible
-//! polynomial of a dimension and e its degree. Row j of the generator matrix, counted from 0, is
+//! Niederreiter, Implementation and tests of low-discrepancy sequences, ACM TOMACS 2, 1992, section 3.3. Let p be the
+//! irreducible polynomial of a dimension and e its degree. Row j of the generator matrix, counted from 0, is
 //! `c_r = v_(r + u)`, `u = j mod e`, where the sequence v obeys the linear recurrence of `p^q`, `q = j div e + 1`, and
 //! starts with `e (q - 1)` zeros and e ones.
 //!

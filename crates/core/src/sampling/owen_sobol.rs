@@ -76,6 +76,14 @@ mod tests {
     }
 
     #[test]
+    fn points_are_those_that_published_results_were_made_with() {
+        let published =
+            [[12_798_262, 12_932_646, 11_866_319, 10_689_849], [10_539_833, 13_750_925, 15_735_163, 12_776_166]];
+        let found = points(3, (1 << 32) - 1, 2);
+        assert_eq!(found, published.map(|point: [u32; 4]| point.map(|x| x as f32 / (1 << 24) as f32)));
+    }
+
+    #[test]
     fn every_dimension_is_stratified_at_every_power_of_two() {
         for stream in 0..20 {
             for m in 0..10 {

@@ -3,9 +3,8 @@
 //! The permutations are those of Faure, Good permutations for extreme discrepancy, J. Number Theory 42, 1992, made from the
 //! identity in base 2: for an even base b, `pi_b` is twice `pi_(b/2)`, followed by the same plus one; for an odd base
 //! `b = 2c + 1` it is `pi_(b-1)` with c put into the middle and one added to what was c or more. In bases 2 and 3 it is the
-//! identity. They break up the diagonals of points that large bases have in common. Rotated
-//! independently for each stream and dimension: unbiased. 32 dimensions of its own. Cost: as Halton's points, and one table access
-//! a digit.
+//! identity. They break up the diagonals of points that large bases have in common. Rotated independently for each
+//! stream and dimension: unbiased. 32 dimensions of its own. Cost: as Halton's points, and one table access a digit.
 
 use super::construction::radical_inverse::{PRIMES, radical_inverse, rotate};
 use super::construction::stream_key::StreamKey;
