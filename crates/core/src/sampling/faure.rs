@@ -3,7 +3,7 @@
 //! Faure, Discrépance de suites associées à un système de numération (en dimension s), Acta Arithmetica 41, 1982. The
 //! generator matrix of dimension d, from 0, is the d-th power of the Pascal matrix modulo 5: `c_jk = binomial(k, j) d^(k - j)`.
 //! Five is the least prime that has a (0, s)-sequence for a line's four numbers: every block of 5^m points is a (0, m, 5)-net.
-//! Five dimensions of its own.
+//! Unbiased. Five dimensions of its own.
 
 use super::Entry;
 use super::construction::base5::{COLUMNS, DIMENSIONS, Matrices, Matrix, ROWS, Shifted};

@@ -2,9 +2,9 @@
 //!
 //! Tezuka, Uniform Random Numbers: Theory and Practice, 1995, pages 179-180; Tezuka & Tokuyama, A note on polynomial
 //! arithmetic analogue of Halton sequences, ACM TOMACS 4, 1994. The generator matrix of dimension d, from 0, is
-//! `(P^T)^d P^d` modulo 5, P the upper triangular Pascal matrix. A non-singular lower triangular factor only mixes the strips of
-//! a coordinate among themselves, so every block of 5^m points is a (0, m, 5)-net as with Faure's points, but the points of
-//! short blocks no longer lie along the diagonal. Five dimensions of its own.
+//! `(P^T)^d P^d` modulo 5, P the upper triangular Pascal matrix. A non-singular lower triangular factor only mixes the
+//! strips of a coordinate among themselves, so every block of 5^m points is a (0, m, 5)-net as with Faure's points, but the
+//! points of short blocks no longer lie along the diagonal. Unbiased. Five dimensions of its own.
 
 use super::Entry;
 use super::construction::base5::{COLUMNS, DIMENSIONS, Matrices, Matrix, ROWS, Shifted};

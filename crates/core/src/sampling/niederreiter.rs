@@ -7,7 +7,7 @@
 //! starts with `e (q - 1)` zeros and e ones.
 //!
 //! A (t, s)-sequence with t the sum of e - 1: t = 0, 0, 1, 3, 5 in one to five dimensions. Points are taken in the order of
-//! the index, not of its Gray code. 32 dimensions of its own.
+//! the index, not of its Gray code. Unbiased. 32 dimensions of its own.
 
 use super::Entry;
 use super::construction::base2::{Columns, DIMENSIONS, Matrices, Shifted};

@@ -1,8 +1,8 @@
 //! Random numbers from a counter: Philox4x32-10.
 //!
 //! Salmon, Moraes, Dror & Shaw, Parallel random numbers: as easy as 1, 2, 3, SC 2011. Ten rounds of multiplication,
-//! exclusive-or and exchange turn a counter of 128 bits, here index and stream, into 128 random bits under a key, here the seed. So four
-//! numbers cost one call, whichever come first; numbers 4 to 7 come from the next key, and so on. Unbiased.
+//! exclusive-or and exchange turn a counter of 128 bits, here index and stream, into 128 random bits under a key, here the
+//! seed. So four numbers cost one call, whichever come first; numbers 4 to 7 come from the next key, and so on. Unbiased.
 
 use super::construction::to_unit;
 use super::{Entry, Sample, Sequence};

@@ -6,7 +6,7 @@
 //! `v_k = a_1 v_(k-1) + ... + a_(s-1) v_(k-s+1) + v_(k-s) + v_(k-s) / 2^s` (sums without carry), from s given numbers on.
 //!
 //! A (t, s)-sequence with t the sum of the degrees less one, from the second dimension on: t = 0, 0, 1, 3, 5 in one to five
-//! dimensions. Points are taken in the order of the index, not of its Gray code. 32 dimensions of its own.
+//! dimensions. Points are taken in the order of the index, not of its Gray code. Unbiased. 32 dimensions of its own.
 
 use super::Entry;
 use super::construction::base2::{Columns, DIMENSIONS, Matrices, Shifted};
