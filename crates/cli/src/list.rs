@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::terminal;
+use isolux_core::sampling::SEQUENCES;
 use isolux_core::scene::builtin::BUILT_IN;
 use isolux_core::solvers::stochastic_jacobi;
 use isolux_io::{export, import};
@@ -11,7 +12,7 @@ Examples:
   isolux list
   isolux list scenes";
 
-/// Show the built-in scenes, the file formats and the methods
+/// Show the built-in scenes, the file formats, the methods and the sample sequences
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct List {
@@ -27,11 +28,18 @@ enum What {
     Formats,
     /// Algorithms
     Methods,
+    /// Sample numbers
+    Sequences,
 }
 
 impl List {
     pub fn run(self) -> Result<u8, Failure> {
-        let tables = [(What::Scenes, scenes as fn() -> String), (What::Formats, formats), (What::Methods, methods)];
+        let tables = [
+            (What::Scenes, scenes as fn() -> String),
+            (What::Formats, formats),
+            (What::Methods, methods),
+            (What::Sequences, sequences),
+        ];
         let wanted = tables.iter().filter(|(what, _)| self.what.is_none_or(|wanted| wanted == *what));
         let text: Vec<String> = wanted.map(|(_, table)| table()).collect();
         terminal::print(&text.join("\n")).map(|()| 0)
@@ -70,4 +78,12 @@ fn methods() -> String {
         stochastic_jacobi::NAME,
         ""
     )
+}
+
+fn sequences() -> String {
+    let mut text = "Sample sequences, the default first\n".to_owned();
+    for entry in SEQUENCES {
+        text += &format!("  {:<17}  {} ({})\n", entry.name, entry.what, entry.source);
+    }
+    text
 }

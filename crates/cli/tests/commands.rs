@@ -62,10 +62,11 @@ fn a_file_wins_over_a_built_in_scene() {
 fn lists_help_and_version_teach() {
     let folder = Folder::new();
     let all = folder.prints(&["list"]);
-    for word in ["cornell-box", ":rho=", ".glb", ".isolux", "stochastic-jacobi"] {
+    for word in ["cornell-box", ":rho=", ".glb", ".isolux", "stochastic-jacobi", "owen-sobol"] {
         assert!(all.contains(word), "{word}: {all}");
     }
     assert!(!folder.prints(&["list", "formats"]).contains("cornell-box"));
+    assert!(folder.prints(&["list", "sequences"]).contains("scrambled-halton"));
     assert!(folder.prints(&[]).contains("Usage: isolux"));
     assert!(folder.prints(&["--version"]).starts_with("isolux "));
     for command in ["solve", "render", "check", "compare", "scene", "list"] {

@@ -6,6 +6,7 @@
 use crate::ensemble::comparisons;
 use crate::honesty;
 use crate::statistics::{p_of_chi2, p_of_t, p_of_z};
+use isolux_core::sampling::SEQUENCES;
 
 /// Probability that one run of the whole suite raises a false alarm.
 pub const FALSE_ALARM: f64 = 1e-6;
@@ -33,6 +34,9 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("bright sphere", comparisons(8)),
     ("box: 12 elements", comparisons(6)),
     ("box: 48 elements", comparisons(6)),
+    ("integrals by sequences", 4 * SEQUENCES.len() as u32),
+    ("streams of sequences", SEQUENCES.len() as u32),
+    ("uniform numbers of sequences", 4 * SEQUENCES.len() as u32),
 ];
 
 /// Significance level of a single comparison.

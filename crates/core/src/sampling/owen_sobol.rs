@@ -4,10 +4,22 @@
 //! (Burley, Practical Hash-based Owen Scrambling, JCGT 2020, with Vegdahl's constants for the Laine-Karras hash). Every stream is
 //! scrambled independently, so each point is uniform (estimates are unbiased), streams are independent (replicates give
 //! standard errors), and the first 2^m points of a stream are a (t,m,4)-net. Cost: one shift and exclusive-or for
-//! each set bit of the index and dimension, and one hash for each dimension.
+//! each set bit of the index and dimension, and one hash for each dimension. 32 dimensions of its own.
 
-use super::{Sample, Sequence};
+use super::construction::base2::DIMENSIONS;
+use super::construction::scramble::scramble;
+use super::construction::stream_key::StreamKey;
+use super::construction::to_unit;
+use super::sobol::MATRICES;
+use super::{Entry, Sample, Sequence};
 use crate::math::hash::derive;
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "owen-sobol",
+    what: "Sobol' points with Owen's nested uniform scrambling",
+    source: "Burley 2020",
+    make: |seed| Box::new(OwenSobol::new(seed)),
+};
 
 /// Independent scramblings of the same Sobol' sequence, one for each stream.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -26,78 +38,31 @@ impl Sequence for OwenSobol {
         let stream_key = derive(self.seed, stream);
         for (index, point) in (first..).zip(points) {
             // Every 2^32 points a new, independent scrambling begins.
-            let (block, low) = (index >> 32, index as u32);
-            let (a, b) = (derive(stream_key, 2 * block), derive(stream_key, 2 * block + 1));
-            let seeds = [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32];
-            *point = std::array::from_fn(|d| to_unit(scramble(sobol(low, d), seeds[d])));
+            let seeds = seeds(stream_key, index >> 32);
+            *point = std::array::from_fn(|d| to_unit(scramble(sobol(index as u32, d), seeds[d])));
         }
+    }
+
+    fn number(&self, stream: u64, index: u64, dimension: u32) -> f32 {
+        let stream_key = derive(self.seed, stream);
+        let (index, d) = StreamKey::new(self.seed, stream).padded(index, dimension, DIMENSIONS);
+        let seed = match seeds(stream_key, index >> 32).get(dimension as usize) {
+            Some(&seed) => seed,
+            None => derive(derive(stream_key, 2 * (index >> 32)), u64::from(dimension)) as u32,
+        };
+        to_unit(scramble(sobol(index as u32, d), seed))
     }
 }
 
-/// Primitive polynomials (degree, coefficients) and initial numbers of dimensions 2 to 4 (Joe & Kuo's new-joe-kuo-6).
-const JOE_KUO: [(u32, u32, [u32; 3]); 3] = [(1, 0, [1, 0, 0]), (2, 1, [1, 3, 0]), (3, 1, [1, 3, 1])];
-
-static DIRECTIONS: [[u32; 32]; 4] = direction_numbers();
-
-const fn direction_numbers() -> [[u32; 32]; 4] {
-    let mut v = [[0u32; 32]; 4];
-    let mut k = 0;
-    while k < 32 {
-        v[0][k] = 1 << (31 - k);
-        k += 1;
-    }
-    let mut d = 1;
-    while d < 4 {
-        let (degree, coefficients, initial) = JOE_KUO[d - 1];
-        let s = degree as usize;
-        let mut k = 0;
-        while k < 32 {
-            v[d][k] = if k < s {
-                initial[k] << (31 - k)
-            } else {
-                let mut value = v[d][k - s] ^ (v[d][k - s] >> s);
-                let mut j = 1;
-                while j < s {
-                    if (coefficients >> (s - 1 - j)) & 1 == 1 {
-                        value ^= v[d][k - j];
-                    }
-                    j += 1;
-                }
-                value
-            };
-            k += 1;
-        }
-        d += 1;
-    }
-    v
+/// Seeds of the first four dimensions in a block of 2^32 points.
+fn seeds(stream_key: u64, block: u64) -> [u32; 4] {
+    let (a, b) = (derive(stream_key, 2 * block), derive(stream_key, 2 * block + 1));
+    [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32]
 }
 
 /// Component `d` of Sobol' point `index`, as a 32-bit fraction.
 fn sobol(index: u32, d: usize) -> u32 {
-    if d == 0 {
-        return index.reverse_bits();
-    }
-    let (mut bits, mut x) = (index, 0);
-    while bits != 0 {
-        x ^= DIRECTIONS[d][bits.trailing_zeros() as usize];
-        bits &= bits - 1;
-    }
-    x
-}
-
-/// Owen's nested uniform scrambling: each bit is flipped by a hash of the bits above it.
-fn scramble(x: u32, seed: u32) -> u32 {
-    let mut x = x.reverse_bits();
-    x ^= x.wrapping_mul(0x3d20_adea);
-    x = x.wrapping_add(seed);
-    x = x.wrapping_mul((seed >> 16) | 1);
-    x ^= x.wrapping_mul(0x0552_6c56);
-    x ^= x.wrapping_mul(0x53a2_2864);
-    x.reverse_bits()
-}
-
-fn to_unit(x: u32) -> f32 {
-    (x >> 8) as f32 * (1.0 / (1 << 24) as f32)
+    if d == 0 { index.reverse_bits() } else { MATRICES.fraction(u64::from(index), d) }
 }
 
 #[cfg(test)]
@@ -111,21 +76,11 @@ mod tests {
     }
 
     #[test]
-    fn unscrambled_points_are_those_of_joe_and_kuo() {
-        let fraction = |index, d| f64::from(sobol(index, d)) / 2f64.powi(32);
-        // Points 1 to 7 in binary (not Gray code) order, from the recurrence worked by hand.
-        let expected = [
-            [0.5, 0.5, 0.5, 0.5],
-            [0.25, 0.75, 0.75, 0.75],
-            [0.75, 0.25, 0.25, 0.25],
-            [0.125, 0.625, 0.375, 0.125],
-            [0.625, 0.125, 0.875, 0.625],
-            [0.375, 0.375, 0.625, 0.875],
-            [0.875, 0.875, 0.125, 0.375],
-        ];
-        for (k, point) in expected.iter().enumerate() {
-            assert_eq!(std::array::from_fn(|d| fraction(k as u32 + 1, d)), *point, "point {}", k + 1);
-        }
+    fn points_are_those_that_published_results_were_made_with() {
+        let published =
+            [[12_798_262, 12_932_646, 11_866_319, 10_689_849], [10_539_833, 13_750_925, 15_735_163, 12_776_166]];
+        let found = points(3, (1 << 32) - 1, 2);
+        assert_eq!(found, published.map(|point: [u32; 4]| point.map(|x| x as f32 / (1 << 24) as f32)));
     }
 
     #[test]
