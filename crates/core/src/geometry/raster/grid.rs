@@ -83,6 +83,12 @@ impl Grid {
         [tile % along, tile / along].map(|k| (k * TILE).min(self.cells)..((k + 1) * TILE).min(self.cells))
     }
 
+    /// The lines of `tile`, row by row.
+    pub fn lines(&self, tile: u32) -> Vec<Ray> {
+        let [columns, rows] = self.cells_of(tile);
+        rows.flat_map(|row| columns.clone().map(move |column| self.line(column, row))).collect()
+    }
+
     /// The tiles that some of these cells belong to.
     pub fn tiles_of(&self, [columns, rows]: [Range<u32>; 2]) -> impl Iterator<Item = u32> + use<> {
         let along = self.tiles_along_edge();
