@@ -72,6 +72,7 @@ impl Geometry for Faulty {
         distorted.iter().zip(hits).filter(|(_, hit)| !hit.is_miss()).for_each(|(ray, hit)| self.spoil(ray, hit));
     }
 
+    /// Global lines leave no surface: they are left alone.
     fn all(&self, rays: &[Ray], lists: &mut HitLists) {
         self.sound.all(rays, lists);
     }

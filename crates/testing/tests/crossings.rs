@@ -42,7 +42,7 @@ fn consecutive_crossings_are_what_rays_from_either_of_them_hit() {
         let problem = problem(name, 1);
         let sphere = problem.geometry.bounding_sphere();
         let mut random = Random::new(1);
-        let lines: Vec<Ray> = (0..20_000).map(|_| global_line(sphere, [0; 4].map(|_| random.uniform()))).collect();
+        let lines: Vec<Ray> = (0..20_000).map(|_| global_line::ray([0; 4].map(|_| random.uniform()), sphere)).collect();
         let mut lists = HitLists::default();
         problem.geometry.all(&lines, &mut lists);
         let (mut rays, mut expected) = (Vec::new(), Vec::new());

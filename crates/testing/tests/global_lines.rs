@@ -11,7 +11,7 @@ use isolux_core::math::{Frame, Rgb};
 use isolux_core::sampling::{Sample, Sequence};
 use isolux_core::scene::builtin::shapes::Builder;
 use isolux_core::scene::{Material, Scene};
-use isolux_core::transport::{Arrival, Bundle, Span, expected_crossings, global_line, spans, spans_of_lines};
+use isolux_core::transport::{Arrival, Bundle, Span, global_line, spans};
 use isolux_testing::budget::{assert_chi2, assert_t, assert_z, refutes};
 use isolux_testing::exact::{BLOCKED_SQUARES, parallel_rectangles, perpendicular_rectangles};
 use isolux_testing::random::Random;
@@ -54,7 +54,8 @@ fn elements(span: Span) -> [Option<u32>; 2] {
 fn crossings(problem: &Problem, lines: u64, draw: impl FnOnce(&mut dyn FnMut(Span))) -> Vec<f64> {
     let mut crossings = vec![0; problem.mesh.len()];
     draw(&mut |span| elements(span).into_iter().flatten().for_each(|e| crossings[e as usize] += 1));
-    let probability = |e| expected_crossings(1, problem.mesh.area(e), problem.geometry.bounding_sphere().1);
+    let probability =
+        |e| global_line::expected_crossings(1, problem.mesh.area(e), problem.geometry.bounding_sphere().1);
     problem.mesh.elements().map(|e| z_of_count(crossings[e as usize], lines, probability(e))).collect()
 }
 
@@ -62,7 +63,7 @@ fn crossings(problem: &Problem, lines: u64, draw: impl FnOnce(&mut dyn FnMut(Spa
 fn lines_cross_elements_in_proportion_to_their_areas() {
     const LINES: u64 = 400_000;
     let room = problem("box", 12);
-    for z in crossings(&room, LINES, |each| spans_of_lines(&room, &Independent, 0..LINES, each)) {
+    for z in crossings(&room, LINES, |each| global_line::trace(&room, &Independent, 0..LINES, each)) {
         assert_z("crossings of global lines", z);
     }
     // Two-sided faces have an element on each side, and each line meets both.
@@ -70,7 +71,7 @@ fn lines_cross_elements_in_proportion_to_their_areas() {
     scene.materials.iter_mut().for_each(|material| material.two_sided = true);
     let two_sided = cut(scene, 24);
     assert_eq!(two_sided.mesh.len(), 24);
-    let sides = crossings(&two_sided, LINES, |each| spans_of_lines(&two_sided, &Independent, 0..LINES, each));
+    let sides = crossings(&two_sided, LINES, |each| global_line::trace(&two_sided, &Independent, 0..LINES, each));
     let one_side = two_sided.mesh.elements().filter(|&e| !two_sided.mesh.place(e).back);
     one_side.for_each(|e| assert_z("crossings of global lines", sides[e as usize]));
 
@@ -124,7 +125,7 @@ fn shares_of_spans_are_form_factors() {
     const LINES: u64 = 1_000_000;
     for (problem, exact) in pairs() {
         let mut seen = Seen::default();
-        spans_of_lines(&problem, &Independent, 0..LINES, |span| seen.count(&problem, span));
+        global_line::trace(&problem, &Independent, 0..LINES, |span| seen.count(&problem, span));
         assert_z("form factors of rectangles by global lines", z_of_count(seen.both, seen.first, exact));
     }
     let [(parallel, exact), ..] = pairs();
@@ -178,7 +179,7 @@ fn inside_a_sphere_lines_join_every_pair_of_octants_alike() {
         });
         chi_square(&pairs, &[pairs.iter().sum::<u64>() as f64 / 64.0; 64])
     };
-    let (chi2, dof) = judge(&|each| spans_of_lines(&sphere, &Independent, 0..LINES, each));
+    let (chi2, dof) = judge(&|each| global_line::trace(&sphere, &Independent, 0..LINES, each));
     assert_chi2("form factors of the sphere by global lines", chi2, dof);
     let (chi2, dof) = judge(&|each| lines_through_the_ball(&sphere, LINES, |_, span| each(span)));
     assert!(refutes(p_of_chi2(chi2, dof)));
@@ -210,9 +211,9 @@ fn directions_at_an_element_are_cosine_distributed() {
         let (chi2, dof) = directions_at(&room, e, |each| {
             for k in 0..LINES {
                 let mut sample = [[0.0; 4]];
-                Independent.fill(isolux_core::transport::global_line::STREAM, k, &mut sample);
-                let direction = global_line(room.geometry.bounding_sphere(), sample[0]).direction;
-                spans_of_lines(&room, &Independent, k..k + 1, |span| each(direction, span));
+                Independent.fill(global_line::STREAM, k, &mut sample);
+                let direction = global_line::ray(sample[0], room.geometry.bounding_sphere()).direction;
+                global_line::trace(&room, &Independent, k..k + 1, |span| each(direction, span));
             }
         });
         assert_chi2("directions of global lines at an element", chi2, dof);

@@ -18,6 +18,7 @@ pub enum Arrival {
 
 impl Arrival {
     /// At barycentric coordinates `uv` of `triangle`, on its front or its back.
+    #[inline]
     pub fn at(problem: &Problem, triangle: u32, uv: Vec2, back: bool) -> Arrival {
         let element = |(element, uv)| Arrival::Element { element, spot: Spot::at(uv) };
         problem.mesh.locate(triangle, uv, back).map_or(Arrival::BackFace, element)

@@ -11,6 +11,5 @@ pub mod span;
 pub use arrival::{Arrival, arrivals};
 pub use bundle::Bundle;
 pub use footprint::{Footprint, Leaving, Spot};
-pub use global_line::{expected_crossings, global_line, spans_of_lines};
 pub use local_line::Departure;
 pub use span::{Span, spans};

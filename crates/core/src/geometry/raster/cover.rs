@@ -158,7 +158,7 @@ mod tests {
         let quads = (0..N).flat_map(|i| (0..N).map(move |j| (i, j)));
         let halves = |(i, j)| {
             let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
-            if mix(seed + i + N * j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, d, b], [c, d, b]] }
+            if mix(seed + i + N * j).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, d, b], [c, d, b]] }
         };
         quads.flat_map(halves).map(triangle).collect()
     }

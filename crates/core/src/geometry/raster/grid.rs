@@ -77,10 +77,11 @@ impl Grid {
         self.tiles_along_edge().pow(2)
     }
 
-    /// Columns and rows of the cells of `tile`.
+    /// Columns and rows of the cells of `tile`; no rows for a tile that does not exist.
     pub fn cells_of(&self, tile: u32) -> [Range<u32>; 2] {
         let along = self.tiles_along_edge();
-        [tile % along, tile / along].map(|k| (k * TILE).min(self.cells)..((k + 1) * TILE).min(self.cells))
+        let border = |k: u32| k.saturating_mul(TILE).min(self.cells);
+        [tile % along, tile / along].map(|k| border(k)..border(k.saturating_add(1)))
     }
 
     /// The lines of `tile`, row by row.

@@ -53,7 +53,7 @@ impl Raster {
         Raster { grid, triangles, numbers, ends }
     }
 
-    /// The crossings of the lines of `tile`, a list for each of its cells, row by row.
+    /// The crossings of the lines of `tile`, a list for each of its cells, row by row; no lists for a tile that does not exist.
     pub fn crossings(&self, tile: u32) -> HitLists {
         let [columns, rows] = self.grid.cells_of(tile);
         let width = columns.end - columns.start;
@@ -70,8 +70,47 @@ impl Raster {
     }
 
     fn numbers_of(&self, tile: u32) -> &[u32] {
+        let end_of = |tile: usize| self.ends.get(tile).copied().unwrap_or(self.numbers.len());
         let tile = tile as usize;
-        let begin = if tile == 0 { 0 } else { self.ends[tile - 1] };
-        &self.numbers[begin..self.ends[tile]]
+        &self.numbers[tile.checked_sub(1).map_or(0, end_of)..end_of(tile)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec2;
+
+    const GRID: u32 = 100;
+
+    /// Crossings of all lines along z with triangles in the ball of radius 1 m about the origin.
+    fn crossings(triangles: &[[Vec3; 3]]) -> usize {
+        let grid = Grid::new((Vec3::ZERO, 1.0), Vec3::Z, Vec2::splat(0.5), GRID);
+        let raster = Raster::new(grid, triangles.iter().copied());
+        (0..grid.tiles()).map(|tile| raster.crossings(tile).iter().map(<[_]>::len).sum::<usize>()).sum()
+    }
+
+    #[test]
+    fn a_triangle_is_crossed_by_its_share_of_the_lines() {
+        // Half of the square [-0.6, 0.6]², over several tiles: 60² cells, half of those on the diagonal.
+        let [a, b, c] = [Vec3::new(-0.6, -0.6, 0.0), Vec3::new(0.6, -0.6, 0.1), Vec3::new(0.6, 0.6, 0.2)];
+        let d = Vec3::new(-0.6, 0.6, 0.0);
+        assert_eq!(crossings(&[[a, b, c], [a, c, d]]), 3600);
+        assert_eq!(crossings(&[[a, b, c]]) + crossings(&[[d, a, c]]), 3600);
+        assert!(crossings(&[[a, b, c]]).abs_diff(1800) <= 30);
+    }
+
+    #[test]
+    fn what_is_not_finite_or_not_there_is_not_crossed() {
+        assert_eq!(crossings(&[[Vec3::NAN, Vec3::X, Vec3::Y], [Vec3::X, Vec3::Y, Vec3::INFINITY]]), 0);
+        assert_eq!(crossings(&[]), 0);
+        for radius in [0.0, f32::NAN, f32::INFINITY] {
+            let grid = Grid::new((Vec3::ZERO, radius), Vec3::Z, Vec2::ZERO, 3);
+            let raster = Raster::new(grid, [[Vec3::X, Vec3::Y, Vec3::Z]].into_iter());
+            assert_eq!(raster.crossings(0).iter().flatten().count(), 0);
+        }
+        let grid = Grid::new((Vec3::ZERO, 1.0), Vec3::Z, Vec2::ZERO, 3);
+        let raster = Raster::new(grid, [[Vec3::X, Vec3::Y, Vec3::ZERO]].into_iter());
+        assert!([1, 2, u32::MAX].into_iter().all(|tile| raster.crossings(tile).is_empty()), "there is one tile");
     }
 }
