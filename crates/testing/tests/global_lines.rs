@@ -1,5 +1,5 @@
-//! Global lines and bundles: how often they cross, and who they say sees whom, against exact answers. Each test also sees its own
-//! planted fault.
+//! Global lines and bundles: how often they cross, and who they say sees whom, against exact answers. Each test also sees its
+//! own planted fault.
 
 use glam::Vec3;
 use isolux_core::Problem;
