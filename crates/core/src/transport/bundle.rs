@@ -5,8 +5,8 @@
 //! a` times, `A / (2 a)` times in the mean over all directions. Each line alone is a global line, so all that is true of
 //! those holds; but the lines of a bundle are not independent: errors fall with the number of bundles, not of lines.
 //!
-//! Unbiased, but for corners rounded to 1/65,536 of a cell. Cost: O(triangles) a bundle, and then a few nanoseconds a
-//! crossing, by rasterisation; the analytic sphere is traced by rays.
+//! Unbiased, but for corners rounded to 1/65,536 of a cell. Cost: O(triangles) a bundle, and then O(crossings), by
+//! rasterisation; the analytic sphere is traced by rays.
 
 use super::span::{Span, spans};
 use crate::Error;
