@@ -1,7 +1,7 @@
 # Everything a fresh machine with cargo needs.
 #   make demo    build isolux, light a room, leave picture, model and report in out/
 #   make test    every test
-#   make bench   speed of the ray kernel
+#   make bench   speed of the ray kernel and of global lines
 #   make study-reference-rooms    real rooms against an independent renderer
 
 ISOLUX = target/release/isolux
@@ -24,7 +24,7 @@ test:
 	cargo test --release --locked --workspace
 
 bench:
-	cargo bench --locked -p isolux-core --bench kernel
+	cargo bench --locked -p isolux-core --bench kernel --bench lines
 
 lint:
 	cargo fmt --all --check

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use isolux_core::Problem;
-use isolux_core::geometry::{Geometry, Hit, NONE, Ray};
+use isolux_core::geometry::{Geometry, Hit, HitLists, NONE, Ray};
 use isolux_core::math::hash::{mix, unit_f64};
 
 /// A fault of the lines.
@@ -70,6 +70,11 @@ impl Geometry for Faulty {
         let distorted: Vec<Ray> = rays.iter().map(|ray| self.distort(ray)).collect();
         self.sound.closest(&distorted, hits);
         distorted.iter().zip(hits).filter(|(_, hit)| !hit.is_miss()).for_each(|(ray, hit)| self.spoil(ray, hit));
+    }
+
+    /// Global lines leave no surface: they are left alone.
+    fn all(&self, rays: &[Ray], lists: &mut HitLists) {
+        self.sound.all(rays, lists);
     }
 
     fn any(&self, rays: &[Ray], reach: &[f32], blocked: &mut [bool]) {

@@ -1,6 +1,6 @@
 //! The oracle: every ray against every triangle (Möller & Trumbore 1997, in double precision). Slow and obviously right.
 
-use super::{Corners, Geometry, Hit, NONE, Ray};
+use super::{Corners, Geometry, Hit, HitLists, NONE, Ray};
 use crate::scene::Scene;
 use glam::{DVec3, Vec2, Vec3};
 
@@ -15,25 +15,35 @@ impl Brute {
         Brute { corners: Corners::of(scene) }
     }
 
-    /// Every hit of `ray` in front of its origin, in the order of distance.
-    pub fn all(&self, ray: &Ray) -> Vec<Hit> {
-        let triangles = self.corners.triangles.iter().enumerate().filter(|(k, _)| *k as u32 != ray.from);
-        let mut hits: Vec<Hit> = triangles.filter_map(|(k, corners)| intersect(ray, k as u32, *corners)).collect();
-        hits.sort_by(|a, b| a.t.total_cmp(&b.t));
-        hits
+    /// Every hit of `ray` in front of its origin, in the order of triangles.
+    fn hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
+        let triangles = (0u32..).zip(&self.corners.triangles).filter(|(k, _)| *k != ray.from);
+        triangles.filter_map(|(k, corners)| intersect(ray, k, *corners))
+    }
+
+    fn first(&self, ray: &Ray) -> Hit {
+        self.hits(ray).min_by(|a, b| a.t.total_cmp(&b.t)).unwrap_or(Hit::MISS)
     }
 }
 
 impl Geometry for Brute {
     fn closest(&self, rays: &[Ray], hits: &mut [Hit]) {
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.all(ray).first().copied().unwrap_or(Hit::MISS);
+            *hit = self.first(ray);
+        }
+    }
+
+    fn all(&self, rays: &[Ray], lists: &mut HitLists) {
+        lists.clear();
+        for ray in rays {
+            self.hits(ray).for_each(|hit| lists.push(hit));
+            lists.finish();
         }
     }
 
     fn any(&self, rays: &[Ray], reach: &[f32], blocked: &mut [bool]) {
         for ((ray, reach), blocked) in rays.iter().zip(reach).zip(blocked) {
-            *blocked = self.all(ray).first().is_some_and(|hit| hit.t < *reach);
+            *blocked = self.first(ray).t < *reach;
         }
     }
 

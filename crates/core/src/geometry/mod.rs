@@ -1,14 +1,17 @@
 //! What a ray or a line hits.
 //!
-//! A [`Geometry`] answers two questions: what does this ray hit first, and where is this point of a triangle? It knows
-//! triangles only; elements are found from the barycentric coordinates of a hit (see [`crate::mesh`]).
+//! A [`Geometry`] answers three questions: what does this ray hit first, what does it hit at all, and where is this point of a
+//! triangle? It knows triangles only; elements are found from the barycentric coordinates of a hit (see [`crate::mesh`]).
 
 pub mod brute;
 pub mod bvh;
+mod hit_lists;
+pub mod raster;
 pub mod sphere;
 
 pub use brute::Brute;
 pub use bvh::Bvh;
+pub use hit_lists::HitLists;
 pub use sphere::Sphere;
 
 use crate::scene::{Scene, Shape};
@@ -28,7 +31,18 @@ pub struct Ray {
     pub from: u32,
 }
 
-/// Where a ray first meets a surface.
+impl Ray {
+    /// Radii that [`Ray::whole_line`] begins before its point.
+    pub const LEAD: f32 = 1.5;
+
+    /// The whole line through `point`, the one nearest to the centre of a sphere of `radius` [m], as a ray: it begins outside the
+    /// sphere.
+    pub fn whole_line(point: Vec3, direction: Vec3, radius: f32) -> Ray {
+        Ray { origin: point - Ray::LEAD * radius * direction, direction, from: NONE }
+    }
+}
+
+/// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Hit {
@@ -55,6 +69,10 @@ pub trait Geometry: Send + Sync {
     /// First hit of every ray, `hits[k]` for `rays[k]`; both slices have the same length. Fastest if neighbouring rays have
     /// neighbouring origins.
     fn closest(&self, rays: &[Ray], hits: &mut [Hit]);
+
+    /// All hits of every ray, into the lists of `lists`: list k for `rays[k]`, whatever was there before is gone. The nearest hit
+    /// is that of [`Geometry::closest`]; a line that passes through a shared edge hits both triangles at the same distance.
+    fn all(&self, rays: &[Ray], lists: &mut HitLists);
 
     /// Whether anything lies strictly within distance `reach[k]` [m] of the origin of `rays[k]`, into `blocked[k]`.
     fn any(&self, rays: &[Ray], reach: &[f32], blocked: &mut [bool]);

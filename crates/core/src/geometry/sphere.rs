@@ -11,7 +11,7 @@
 //! so equal areas of the face become equal areas of the sphere: its regular cells are elements of one size, and a uniform
 //! point of a cell is uniform on its patch. Shared edges map to the same great circles, so the patches join without gaps.
 
-use super::{Geometry, Hit, NONE, Ray};
+use super::{Geometry, Hit, HitLists, NONE, Ray};
 use crate::scene::octahedron;
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::FRAC_PI_2;
@@ -51,9 +51,10 @@ impl Sphere {
         (face, Vec2::new((r - v) as f32, v as f32))
     }
 
-    /// Where the ray meets the sphere first. A ray that starts inside, or leaves the surface, ends at the far root of
-    /// `|o + t d|² = R²`, which is never its own origin; one that comes from outside hits the back.
-    fn hit(&self, ray: &Ray) -> Hit {
+    /// Where the ray enters the sphere, if it comes from outside, and where it leaves it. A ray that starts inside, or leaves
+    /// the surface, ends at the far root of `|o + t d|² = R²`, which is never its own origin; one that comes from outside
+    /// hits the back first.
+    fn hits(&self, ray: &Ray) -> [Option<Hit>; 2] {
         let origin = ray.origin.as_dvec3() - self.center;
         let direction = ray.direction.as_dvec3().normalize_or_zero();
         let b = origin.dot(direction);
@@ -61,25 +62,39 @@ impl Sphere {
         let half_chord_squared = self.radius * self.radius - nearest.length_squared();
         let outside = ray.from == NONE && origin.length() > self.radius + f64::from(self.lift());
         let half_chord = half_chord_squared.max(0.0).sqrt();
-        let t = if outside { -b - half_chord } else { -b + half_chord };
-        if outside && (half_chord_squared < 0.0 || t < 0.0) {
-            return Hit::MISS;
+        if outside && (half_chord_squared < 0.0 || -b - half_chord < 0.0) {
+            return [None; 2];
         }
-        let (triangle, uv) = self.inverse((origin + direction * t).normalize_or(DVec3::X));
-        Hit { t: t.max(0.0) as f32, triangle, uv, back: outside }
+        let at = |t: f64, back| {
+            let (triangle, uv) = self.inverse((origin + direction * t).normalize_or(DVec3::X));
+            Hit { t: t.max(0.0) as f32, triangle, uv, back }
+        };
+        [outside.then(|| at(-b - half_chord, true)), Some(at(-b + half_chord, false))]
+    }
+
+    fn first(&self, ray: &Ray) -> Hit {
+        self.hits(ray).into_iter().flatten().next().unwrap_or(Hit::MISS)
     }
 }
 
 impl Geometry for Sphere {
     fn closest(&self, rays: &[Ray], hits: &mut [Hit]) {
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.hit(ray);
+            *hit = self.first(ray);
+        }
+    }
+
+    fn all(&self, rays: &[Ray], lists: &mut HitLists) {
+        lists.clear();
+        for ray in rays {
+            self.hits(ray).into_iter().flatten().for_each(|hit| lists.push(hit));
+            lists.finish();
         }
     }
 
     fn any(&self, rays: &[Ray], reach: &[f32], blocked: &mut [bool]) {
         for ((ray, reach), blocked) in rays.iter().zip(reach).zip(blocked) {
-            *blocked = self.hit(ray).t < *reach;
+            *blocked = self.first(ray).t < *reach;
         }
     }
 
@@ -160,7 +175,7 @@ mod tests {
                 let (direction, chord) = ((end - origin).normalize_or_zero(), end.distance(origin));
                 if chord > 0.3 {
                     let ray = Ray { origin: origin + normal * sphere.lift(), direction, from };
-                    let hit = sphere.hit(&ray);
+                    let hit = sphere.first(&ray);
                     assert!((hit.t - chord).abs() < 1e-3 * chord && !hit.back, "{hit:?} {chord}");
                     assert_eq!(cells::at(hit.uv, 1), 0);
                     assert!(sphere.surface(hit.triangle, hit.uv).0.distance(end) < 1e-3);
@@ -173,9 +188,11 @@ mod tests {
     fn rays_from_outside_hit_the_back_or_nothing() {
         let sphere = Sphere::new(CENTER, 2.0);
         let ray = |direction| Ray { origin: CENTER + Vec3::Z * 10.0, direction, from: NONE };
-        let hit = sphere.hit(&ray(Vec3::NEG_Z));
+        let hit = sphere.first(&ray(Vec3::NEG_Z));
         assert!(hit.back && (hit.t - 8.0).abs() < 1e-5);
-        assert!(sphere.hit(&ray(Vec3::Z)).is_miss() && sphere.hit(&ray(Vec3::X)).is_miss());
+        assert!(sphere.first(&ray(Vec3::Z)).is_miss() && sphere.first(&ray(Vec3::X)).is_miss());
+        let through = sphere.hits(&ray(Vec3::NEG_Z)).map(|hit| hit.map(|hit| (hit.t.round(), hit.back)));
+        assert_eq!(through, [Some((8.0, true)), Some((12.0, false))]);
         let mut blocked = [false; 2];
         sphere.any(&[ray(Vec3::NEG_Z); 2], &[7.9, 8.1], &mut blocked);
         assert_eq!(blocked, [false, true]);

@@ -11,23 +11,27 @@ pub fn count(m: u16) -> u32 {
 }
 
 /// The cell at barycentric coordinates `uv`; coordinates on or slightly outside the border belong to the nearest cell.
+#[inline]
 pub fn at(uv: Vec2, m: u16) -> u32 {
     locate(uv, m).0
 }
 
 /// As [`at`], with the barycentric coordinates within the cell, in the order of its [`corners`].
+#[inline]
 pub fn locate(uv: Vec2, m: u16) -> (u32, Vec2) {
     let m = u32::from(m);
     if m == 1 {
         return (0, uv);
     }
     let grid = uv * m as f32;
-    let i = (grid.x.max(0.0) as u32).min(m - 1);
-    let j = (grid.y.max(0.0) as u32).min(m - 1 - i);
+    // What is less than zero is cast to zero.
+    let i = (grid.x as u32).min(m - 1);
+    let j = (grid.y as u32).min(m - 1 - i);
     let within = grid - Vec2::new(i as f32, j as f32);
-    let reversed = within.x + within.y > 1.0 && i + j + 2 <= m;
-    let cell = i * (2 * m - i) + 2 * j + u32::from(reversed);
-    (cell, if reversed { Vec2::ONE - within } else { within })
+    // Half the points lie in reversed cells, in no order: a branch would be guessed wrong at every second one.
+    let reversed = u32::from(within.x + within.y > 1.0) & u32::from(i + j + 2 <= m);
+    let mirrored = reversed as f32;
+    (i * (2 * m - i) + 2 * j + reversed, mirrored + (1.0 - 2.0 * mirrored) * within)
 }
 
 /// Barycentric coordinates of the corners of `cell`, in the orientation of the triangle.

@@ -127,6 +127,7 @@ impl ElementMesh {
     }
 
     /// As [`ElementMesh::at`], with the barycentric coordinates within the element, in the order of its corners.
+    #[inline]
     pub fn locate(&self, triangle: u32, uv: Vec2, back: bool) -> Option<(u32, Vec2)> {
         let surface = &self.surfaces[triangle as usize];
         if back && !surface.two_sided {

@@ -3,6 +3,7 @@
 use super::Spot;
 use crate::Problem;
 use crate::geometry::{Hit, Ray};
+use glam::Vec2;
 
 /// What lies at the end of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,21 +16,22 @@ pub enum Arrival {
     Escaped,
 }
 
+impl Arrival {
+    /// At barycentric coordinates `uv` of `triangle`, on its front or its back.
+    #[inline]
+    pub fn at(problem: &Problem, triangle: u32, uv: Vec2, back: bool) -> Arrival {
+        let element = |(element, uv)| Arrival::Element { element, spot: Spot::at(uv) };
+        problem.mesh.locate(triangle, uv, back).map_or(Arrival::BackFace, element)
+    }
+}
+
 /// Traces `rays` and hands each ray's number and arrival to `each`, in order. `hits` is working memory.
 pub fn arrivals(problem: &Problem, rays: &[Ray], hits: &mut Vec<Hit>, mut each: impl FnMut(usize, Arrival)) {
     hits.clear();
     hits.resize(rays.len(), Hit::MISS);
     problem.geometry.closest(rays, hits);
     for (k, hit) in hits.iter().enumerate() {
-        let arrival = if hit.is_miss() {
-            Arrival::Escaped
-        } else {
-            let located = problem.mesh.locate(hit.triangle, hit.uv, hit.back);
-            located.map_or(Arrival::BackFace, |(element, uv)| {
-                let spot = Spot::at(uv);
-                Arrival::Element { element, spot }
-            })
-        };
-        each(k, arrival);
+        let met = || Arrival::at(problem, hit.triangle, hit.uv, hit.back);
+        each(k, if hit.is_miss() { Arrival::Escaped } else { met() });
     }
 }

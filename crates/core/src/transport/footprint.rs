@@ -53,6 +53,7 @@ pub struct Spot(u16);
 
 impl Spot {
     /// At barycentric coordinates `uv` of the element.
+    #[inline]
     pub fn at(uv: Vec2) -> Spot {
         let (cell, within) = cells::locate(uv, DIVISIONS[0]);
         Spot((cell << SPOT_BITS | cells::at(within, DIVISIONS[1])) as u16)

@@ -4,7 +4,7 @@
 use super::lanes::{Instructions, Lanes};
 use super::node::Tree;
 use super::traverse;
-use crate::geometry::{Hit, Ray};
+use crate::geometry::{Hit, HitLists, Ray};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -27,17 +27,27 @@ impl Avx2 {
         unsafe { closest(tree, rays, hits) }
     }
 
+    pub fn all(self, tree: &Tree, rays: &[Ray], lists: &mut HitLists) {
+        // SAFETY: `self` exists, so this machine has AVX2.
+        unsafe { all(tree, rays, lists) }
+    }
+
     pub fn any(self, tree: &Tree, rays: &[Ray], reach: &[f32], blocked: &mut [bool]) {
         // SAFETY: `self` exists, so this machine has AVX2.
         unsafe { any(tree, rays, reach, blocked) }
     }
 }
 
-// The whole traversal is inlined into these two functions and compiled for AVX2 there.
+// The whole traversal is inlined into these three functions and compiled for AVX2 there.
 
 #[target_feature(enable = "avx2")]
 fn closest(tree: &Tree, rays: &[Ray], hits: &mut [Hit]) {
     traverse::closest::<Avx2>(tree, rays, hits);
+}
+
+#[target_feature(enable = "avx2")]
+fn all(tree: &Tree, rays: &[Ray], lists: &mut HitLists) {
+    traverse::all::<Avx2>(tree, rays, lists);
 }
 
 #[target_feature(enable = "avx2")]
@@ -52,7 +62,7 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                // SAFETY: lanes are computed with inside the two functions above only, on a machine that has AVX2.
+                // SAFETY: lanes are computed with inside the three functions above only, on a machine that has AVX2.
                 Self(unsafe { $intrinsic(self.0, other.0) })
             }
         }
@@ -66,7 +76,7 @@ macro_rules! lanes {
         #[derive(Clone, Copy)]
         pub struct $lanes($register);
 
-        // SAFETY (all blocks): lanes are computed with inside the two functions above only, on a machine that has AVX2.
+        // SAFETY (all blocks): lanes are computed with inside the three functions above only, on a machine that has AVX2.
         // Loads and stores take any alignment and stay inside an array of the register's size.
         impl Lanes<$n> for $lanes {
             #[inline(always)]

@@ -4,7 +4,8 @@
 
 use super::lanes::{Instructions, Lanes};
 use super::node::{LEAF_SIZE, Leaf, Node, WIDTH};
-use crate::geometry::Ray;
+use crate::geometry::{Hit, Ray};
+use glam::Vec2;
 
 /// What both tests need of a ray, computed once.
 pub struct Tracer<I: Instructions> {
@@ -41,6 +42,15 @@ pub struct LeafHits {
     /// Barycentric weights of the corners b and c: at least zero, their sum at most one.
     pub u: [f32; LEAF_SIZE],
     pub v: [f32; LEAF_SIZE],
+}
+
+impl LeafHits {
+    /// The hit in one lane of the mask.
+    #[inline(always)]
+    pub fn hit(&self, leaf: &Leaf, lane: usize) -> Hit {
+        let (uv, back) = (Vec2::new(self.u[lane], self.v[lane]), self.back >> lane & 1 == 1);
+        Hit { t: self.t[lane], triangle: leaf.triangles[lane], uv, back }
+    }
 }
 
 /// A ray for the slab test.

@@ -1,4 +1,4 @@
-//! The ray kernel: what a ray hits first, and whether anything lies in its way.
+//! The ray kernel: what a ray hits first, all that it hits, and whether anything lies in its way.
 //!
 //! Triangles lie in a tree of boxes with eight children a node (a bounding volume hierarchy: Wald, Benthin & Boulos,
 //! Getting Rid of Packets, 2008). One ray is tested against the eight boxes of a node at once, and against the four
@@ -32,7 +32,7 @@ mod portable;
 mod tests;
 mod traverse;
 
-use super::{Corners, Geometry, Hit, Ray};
+use super::{Corners, Geometry, Hit, HitLists, Ray};
 use crate::scene::Scene;
 use glam::{Vec2, Vec3};
 use node::Tree;
@@ -92,6 +92,14 @@ impl Geometry for Bvh {
             Path::Portable => traverse::closest::<Portable>(&self.tree, rays, hits),
             #[cfg(target_arch = "x86_64")]
             Path::Avx2(avx2) => avx2.closest(&self.tree, rays, hits),
+        }
+    }
+
+    fn all(&self, rays: &[Ray], lists: &mut HitLists) {
+        match self.path {
+            Path::Portable => traverse::all::<Portable>(&self.tree, rays, lists),
+            #[cfg(target_arch = "x86_64")]
+            Path::Avx2(avx2) => avx2.all(&self.tree, rays, lists),
         }
     }
 

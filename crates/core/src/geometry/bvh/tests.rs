@@ -56,6 +56,12 @@ fn any(geometry: &dyn Geometry, rays: &[Ray], reach: &[f32]) -> Vec<bool> {
     blocked
 }
 
+fn all(geometry: &dyn Geometry, rays: &[Ray]) -> HitLists {
+    let mut lists = HitLists::default();
+    geometry.all(rays, &mut lists);
+    lists
+}
+
 /// Asserts that both geometries see the same.
 fn assert_agree(triangles: &[[Vec3; 3]], rays: &[Ray]) {
     let scene = scene(triangles);
@@ -92,6 +98,24 @@ fn a_ray_never_hits_the_triangle_it_leaves() {
 }
 
 #[test]
+fn all_hits_are_those_of_brute_force_and_begin_with_the_closest() {
+    let mut random = Random(12);
+    for count in [1, 5, 40, 1000] {
+        let (scene, mut rays) = (scene(&random.soup(count)), random.rays(1000));
+        let (bvh, brute) = (Bvh::new(&scene), Brute::new(&scene));
+        rays.iter_mut().zip(closest(&brute, &random.rays(1000))).for_each(|(ray, hit)| ray.from = hit.triangle);
+        let (ours, exact) = (all(&bvh, &rays), all(&brute, &rays));
+        assert_eq!((ours.len(), exact.len()), (rays.len(), rays.len()));
+        for ((ours, exact), first) in ours.iter().zip(exact.iter()).zip(closest(&bvh, &rays)) {
+            assert_eq!(ours.first().copied().unwrap_or(Hit::MISS), first);
+            let sides = |hits: &[Hit]| hits.iter().map(|hit| (hit.triangle, hit.back)).collect::<Vec<_>>();
+            assert_eq!(sides(ours), sides(exact));
+            assert!(ours.iter().zip(exact).all(|(a, b)| (a.t - b.t).abs() < 2e-6));
+        }
+    }
+}
+
+#[test]
 fn something_is_in_the_way_exactly_within_the_closest_distance() {
     let mut random = Random(3);
     let (bvh, rays) = (Bvh::new(&scene(&random.soup(300))), random.rays(2000));
@@ -121,6 +145,7 @@ fn both_paths_give_the_same_bits() {
         assert_eq!(bits(a), bits(&b));
     }
     assert_eq!(any(&fastest, &rays, &reach), any(&portable, &rays, &reach));
+    assert_eq!(all(&fastest, &rays), all(&portable, &rays));
 }
 
 #[test]

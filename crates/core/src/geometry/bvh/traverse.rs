@@ -1,12 +1,11 @@
-//! The way of a ray through the tree, for the closest hit and for any hit.
+//! The way of a ray through the tree, for the closest hit, for all hits and for any hit.
 //!
-//! Everything is inlined into the two batch functions, so that an instruction set is entered once a batch.
+//! Everything is inlined into the three batch functions, so that an instruction set is entered once a batch.
 
 use super::intersect::{LeafHits, Tracer};
 use super::lanes::Instructions;
 use super::node::{Child, Leaf, Node, Tree, WIDTH};
-use crate::geometry::{Hit, Ray};
-use glam::Vec2;
+use crate::geometry::{Hit, HitLists, Ray};
 
 /// First hit of every ray.
 #[inline(always)]
@@ -14,6 +13,19 @@ pub fn closest<I: Instructions>(tree: &Tree, rays: &[Ray], hits: &mut [Hit]) {
     let mut stack = vec![Waiting { enter: 0.0, child: Child::ROOT }; tree.stack_size];
     for (ray, hit) in rays.iter().zip(hits) {
         *hit = if is_finite(ray) { closest_hit::<I>(tree, ray, &mut stack) } else { Hit::MISS };
+    }
+}
+
+/// All hits of every ray.
+#[inline(always)]
+pub fn all<I: Instructions>(tree: &Tree, rays: &[Ray], lists: &mut HitLists) {
+    let mut stack = vec![Child::ROOT; tree.stack_size];
+    lists.clear();
+    for ray in rays {
+        if is_finite(ray) {
+            all_hits::<I>(tree, ray, &mut stack, lists);
+        }
+        lists.finish();
     }
 }
 
@@ -104,13 +116,35 @@ fn take_closest(best: &mut Hit, leaf: &Leaf, hits: &LeafHits, from: u32) {
     for k in bits(hits.mask) {
         let (t, triangle) = (hits.t[k], leaf.triangles[k]);
         if triangle != from && (t < best.t || (t == best.t && triangle < best.triangle)) {
-            *best = Hit { t, triangle, uv: Vec2::new(hits.u[k], hits.v[k]), back: hits.back >> k & 1 == 1 };
+            *best = hits.hit(leaf, k);
         }
     }
 }
 
 #[inline(always)]
+fn all_hits<I: Instructions>(tree: &Tree, ray: &Ray, stack: &mut [Child], lists: &mut HitLists) {
+    visit::<I>(tree, ray, f32::MAX, stack, |leaf, hits| {
+        bits(hits.mask).filter(|&k| leaf.triangles[k] != ray.from).for_each(|k| lists.push(hits.hit(leaf, k)));
+        false
+    });
+}
+
+#[inline(always)]
 fn any_hit<I: Instructions>(tree: &Tree, ray: &Ray, reach: f32, stack: &mut [Child]) -> bool {
+    visit::<I>(tree, ray, reach, stack, |leaf, hits| {
+        bits(hits.mask).any(|k| hits.t[k] < reach && leaf.triangles[k] != ray.from)
+    })
+}
+
+/// Shows the hits of `ray` within `reach`, leaf by leaf in any order, to `stop` until it is true; whether it ever was.
+#[inline(always)]
+fn visit<I: Instructions>(
+    tree: &Tree,
+    ray: &Ray,
+    reach: f32,
+    stack: &mut [Child],
+    mut stop: impl FnMut(&Leaf, &LeafHits) -> bool,
+) -> bool {
     let tracer = Tracer::<I>::new(ray);
     stack[0] = Child::ROOT;
     let mut waiting = 1;
@@ -119,9 +153,7 @@ fn any_hit<I: Instructions>(tree: &Tree, ray: &Ray, reach: f32, stack: &mut [Chi
         let child = stack[waiting];
         if child.is_leaf() {
             let leaf = &tree.leaves[child.index()];
-            let blocks = |hits: LeafHits| bits(hits.mask).any(|k| hits.t[k] < reach && leaf.triangles[k] != ray.from);
-            let hits = tracer.hit(leaf, reach);
-            if hits.is_some_and(blocks) {
+            if tracer.hit(leaf, reach).is_some_and(|hits| stop(leaf, &hits)) {
                 return true;
             }
         } else {

@@ -1,0 +1,116 @@
+//! All crossings of a bundle of parallel lines, by orthographic rasterisation into a list for every line.
+//!
+//! The lines form a regular grid (see [`grid`]), so a triangle need not be searched for: the lines that cross it are the
+//! points of the grid that its projection covers (see [`cover`]). The crossings of a tile of lines are collected triangle by
+//! triangle, sorted into lists by counting, and each list is sorted by depth (the A-buffer of Carpenter 1984, without its
+//! masks). Neighbouring lines cross the same triangles: this coherence makes a crossing several times cheaper than by rays
+//! (Szirmay-Kalos & Purgathofer, Global ray-bundle tracing with hardware acceleration, EGWR 1998).
+//!
+//! Corners are rounded to 1/65,536 of a cell, so a crossing is where the ray of [`grid::Grid::line`] has it but for that.
+//! Depths are interpolated between the corners' and never lie beyond them.
+//!
+//! Cost: O(triangles) to project and to sort into tiles, once for a direction, 36 bytes a triangle; then O(crossings).
+
+pub mod cover;
+pub mod grid;
+
+use super::HitLists;
+use cover::Projected;
+use glam::Vec3;
+use grid::Grid;
+
+/// Triangles, projected onto a grid and sorted into its tiles.
+#[derive(Clone, Debug)]
+pub struct Raster {
+    grid: Grid,
+    triangles: Vec<Projected>,
+    /// Numbers of the triangles that may cover points of a tile, tile by tile, and where those of each tile end.
+    numbers: Vec<u32>,
+    ends: Vec<usize>,
+}
+
+impl Raster {
+    /// Projects triangles, given by their corners [m]. Those with a coordinate that is not finite are never crossed.
+    pub fn new(grid: Grid, triangles: impl Iterator<Item = [Vec3; 3]>) -> Raster {
+        let finite = |corners: &[Vec3; 3]| corners.iter().all(|corner| corner.is_finite());
+        let project = |corners: [Vec3; 3]| if finite(&corners) { grid.project(corners) } else { Projected::NOTHING };
+        let triangles: Vec<Projected> = triangles.map(project).collect();
+        // A counting sort, as in HitLists::grouped.
+        let tiles_of = |triangle: &Projected| grid.tiles_of(triangle.bounds(grid.cells()));
+        let mut ends = vec![0; grid.tiles() as usize];
+        triangles.iter().flat_map(tiles_of).for_each(|tile| ends[tile as usize] += 1);
+        let mut total = 0;
+        for end in &mut ends {
+            (*end, total) = (total, total + *end);
+        }
+        let mut numbers = vec![0; total];
+        for (number, triangle) in (0..).zip(&triangles) {
+            for tile in tiles_of(triangle) {
+                numbers[ends[tile as usize]] = number;
+                ends[tile as usize] += 1;
+            }
+        }
+        Raster { grid, triangles, numbers, ends }
+    }
+
+    /// The crossings of the lines of `tile`, a list for each of its cells, row by row; no lists for a tile that does not exist.
+    pub fn crossings(&self, tile: u32) -> HitLists {
+        let [columns, rows] = self.grid.cells_of(tile);
+        let width = columns.end - columns.start;
+        let mut fragments = Vec::new();
+        for &number in self.numbers_of(tile) {
+            let triangle = &self.triangles[number as usize];
+            let [across, up] = triangle.bounds(self.grid.cells());
+            let common = |a: std::ops::Range<u32>, b: &std::ops::Range<u32>| a.start.max(b.start)..a.end.min(b.end);
+            triangle.cover(number, [common(across, &columns), common(up, &rows)], |column, row, hit| {
+                fragments.push(((row - rows.start) * width + column - columns.start, hit));
+            });
+        }
+        HitLists::grouped((width * (rows.end - rows.start)) as usize, &fragments)
+    }
+
+    fn numbers_of(&self, tile: u32) -> &[u32] {
+        let end_of = |tile: usize| self.ends.get(tile).copied().unwrap_or(self.numbers.len());
+        let tile = tile as usize;
+        &self.numbers[tile.checked_sub(1).map_or(0, end_of)..end_of(tile)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec2;
+
+    const GRID: u32 = 100;
+
+    /// Crossings of all lines along z with triangles in the ball of radius 1 m about the origin.
+    fn crossings(triangles: &[[Vec3; 3]]) -> usize {
+        let grid = Grid::new((Vec3::ZERO, 1.0), Vec3::Z, Vec2::splat(0.5), GRID);
+        let raster = Raster::new(grid, triangles.iter().copied());
+        (0..grid.tiles()).map(|tile| raster.crossings(tile).iter().map(<[_]>::len).sum::<usize>()).sum()
+    }
+
+    #[test]
+    fn a_triangle_is_crossed_by_its_share_of_the_lines() {
+        // Half of the square [-0.6, 0.6]², over several tiles: 60² cells, half of those on the diagonal.
+        let [a, b, c] = [Vec3::new(-0.6, -0.6, 0.0), Vec3::new(0.6, -0.6, 0.1), Vec3::new(0.6, 0.6, 0.2)];
+        let d = Vec3::new(-0.6, 0.6, 0.0);
+        assert_eq!(crossings(&[[a, b, c], [a, c, d]]), 3600);
+        assert_eq!(crossings(&[[a, b, c]]) + crossings(&[[d, a, c]]), 3600);
+        assert!(crossings(&[[a, b, c]]).abs_diff(1800) <= 30);
+    }
+
+    #[test]
+    fn what_is_not_finite_or_not_there_is_not_crossed() {
+        assert_eq!(crossings(&[[Vec3::NAN, Vec3::X, Vec3::Y], [Vec3::X, Vec3::Y, Vec3::INFINITY]]), 0);
+        assert_eq!(crossings(&[]), 0);
+        for radius in [f32::NAN, f32::INFINITY] {
+            let grid = Grid::new((Vec3::ZERO, radius), Vec3::Z, Vec2::ZERO, 3);
+            let raster = Raster::new(grid, [[Vec3::X, Vec3::Y, Vec3::Z]].into_iter());
+            assert_eq!(raster.crossings(0).iter().flatten().count(), 0);
+        }
+        let grid = Grid::new((Vec3::ZERO, 1.0), Vec3::Z, Vec2::ZERO, 3);
+        let raster = Raster::new(grid, [[Vec3::X, Vec3::Y, Vec3::ZERO]].into_iter());
+        assert!([1, 2, u32::MAX].into_iter().all(|tile| raster.crossings(tile).is_empty()), "there is one tile");
+    }
+}
