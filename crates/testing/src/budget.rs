@@ -15,6 +15,7 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("form factors of the sphere by local lines", 8),
     ("uniform points of a sphere's element", 1),
     ("form factors of rectangles by local lines", 3),
+    ("form factor matrix by local lines", 4),
     ("projections of a fair coin", 12),
     ("furnace: box", 2 * comparisons(6)),
     ("furnace: cubes", 2 * comparisons(9)),
