@@ -77,14 +77,12 @@ fn contour_integrals_converge_to_the_blocked_form_factor() {
     let found = |elements, visibility| {
         error(parts, elements, "contour", Settings { visibility, ..Settings::default() }, exact).abs()
     };
-    for (elements, visibility, bound) in [(6, 8, 0.02), (6, 16, 0.01), (384, 4, 0.005), (384, 8, 0.002)] {
+    for (elements, visibility, bound) in [(6, 8, 0.005), (6, 16, 0.002), (384, 4, 0.001), (384, 8, 0.0002)] {
         let error = found(elements, visibility);
-        println!("{elements} {visibility} {error}");
         assert!(error < bound, "{elements} elements, {visibility} divisions: {error}");
     }
     // The fault: one ray between the centres of large elements.
     let fault = found(6, 1);
-    println!("fault {fault}");
     assert!(fault > 0.02, "{fault}");
 }
 
@@ -95,8 +93,7 @@ fn hemicubes_converge_to_the_exact_form_factors() {
             let settings = Settings { hemicubes, resolution, ..Settings::default() };
             error(parts, 6, "hemicube", settings, exact).abs()
         };
-        println!("{} {} {}", found(1, 64), found(8, 64), found(16, 128));
-        assert!(found(16, 128) < 0.005, "{}", found(16, 128));
+        assert!(found(16, 128) < 0.001, "{}", found(16, 128));
         // The fault, which the method is known for: a large element is taken for its middle.
         assert!(found(1, 128) > 0.005, "{}", found(1, 128));
     }
@@ -109,7 +106,6 @@ fn local_lines_have_honest_standard_errors() {
     for (parts, exact) in cases() {
         let problem = squares(parts, 6);
         let (found, std_error) = between_objects(&problem, &matrix(&problem, "local-lines", settings));
-        println!("{} of {std_error}", (found - exact) / std_error);
         assert_z(TEST, (found - exact) / std_error);
     }
     let faulty = with_fault(squares(&[FLOOR, ABOVE], 6), Fault::NarrowLobe(0.98));
@@ -130,9 +126,7 @@ fn rows_of_a_closed_room_sum_to_one() {
         assert!((sum - 1.0).abs() < 2e-3, "{sum}");
     }
     let worst = |sums: Vec<f64>| sums.into_iter().map(|sum| (sum - 1.0).abs()).fold(0.0, f64::max);
-    println!("box {}", worst(sums(&problem("box", 300), "contour")));
-    println!("cubes {:?}", sums(&room, "contour"));
-    assert!(worst(sums(&problem("box", 300), "contour")) < 1e-5);
+    assert!(worst(sums(&problem("box", 300), "contour")) < 1e-6);
     let mean = |sums: Vec<f64>| sums.iter().sum::<f64>() / sums.len() as f64;
     assert!((mean(sums(&room, "contour")) - 1.0).abs() < 0.01);
     let leaky = with_fault(problem("cubes", 400), Fault::Leaks(0.01));
@@ -148,7 +142,6 @@ fn every_way_gives_form_factors_of_the_box() {
         let factors = matrix(&room, entry.name, settings);
         let far = (0..48).flat_map(|i| (0..48).map(move |j| (i, j)));
         let worst = far.map(|(i, j)| (factors.get(i, j) - exact[i][j]).abs()).fold(0.0, f64::max);
-        println!("{} {worst} {:?}", entry.name, factors.reciprocity());
         assert!(worst < if entry.name == "contour" { 1e-9 } else { 0.02 }, "{}: {worst}", entry.name);
         assert!(!entry.what.is_empty() && !entry.source.is_empty());
     }

@@ -2,6 +2,7 @@
 
 mod allocation;
 pub mod budget;
+pub mod deterministic;
 mod gathering;
 mod replicates;
 mod shooting;
