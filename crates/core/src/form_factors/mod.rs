@@ -83,8 +83,11 @@ pub struct WayEntry {
     /// One line for people.
     pub what: &'static str,
     pub source: &'static str,
-    pub make: fn(&Problem, &Settings) -> Result<Box<dyn Way>, Error>,
+    pub make: Make,
 }
+
+/// Makes a way ready for a problem.
+pub type Make = fn(&Problem, &Settings) -> Result<Box<dyn Way>, Error>;
 
 /// All ways. A new one is a file in this folder and a line here.
 pub const WAYS: &[WayEntry] = &[

@@ -51,7 +51,7 @@ impl Default for Settings {
             correction: Correction::Reciprocity,
             unshot: 1e-5,
             ambient: false,
-            link_power: 1e-4,
+            link_power: 1e-5,
         }
     }
 }
@@ -63,8 +63,11 @@ pub struct Entry {
     /// What it does, two lines for people.
     pub what: [&'static str; 2],
     pub source: &'static str,
-    pub make: fn(&Problem, &Settings) -> Result<Box<dyn Solver>, Error>,
+    pub make: Make,
 }
+
+/// Makes a solver for a problem.
+pub type Make = fn(&Problem, &Settings) -> Result<Box<dyn Solver>, Error>;
 
 /// All deterministic solvers. A new one is a file in this folder and a line here.
 pub const DETERMINISTIC: &[Entry] = &[
