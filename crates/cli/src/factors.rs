@@ -257,9 +257,9 @@ impl Summary<'_> {
         table.row("row sums", [min, mean, max]);
         text += &table.lines();
         text += &format!(
-            "\nReciprocity A_i F_ij = A_j F_ji: RMS difference {} of the RMS exchange area, largest {} m²\n",
+            "\nReciprocity A_i F_ij = A_j F_ji: RMS difference {} of the RMS exchange area, largest {:.2e} m²\n",
             percent(reciprocity.relative_rms),
-            digits(reciprocity.largest, 3),
+            reciprocity.largest,
         );
         if let Some(error) = self.std_error() {
             text += &format!("Standard error of a form factor: {} (RMS)\n", digits(error, 3));

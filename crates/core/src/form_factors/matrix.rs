@@ -98,7 +98,7 @@ impl FormFactors {
 
     /// `Σ_j F_ij`: 1 in a closed scene.
     pub fn row_sum(&self, i: usize) -> f64 {
-        self.values[self.range(i)].iter().sum()
+        self.row(i).fold(0.0, |sum, (_, f)| sum + f)
     }
 
     /// Standard error of [`FormFactors::row_sum`], entries taken as independent.

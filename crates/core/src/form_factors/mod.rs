@@ -25,7 +25,7 @@ use crate::{Error, Problem};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// Entries that a matrix may have at most: about two gigabytes.
+/// Entries that a matrix may have at most: over a gigabyte, and a few times that while it is put together and corrected.
 pub const MOST_ENTRIES: u64 = 100_000_000;
 /// Rows computed at once by each thread.
 const ROWS_PER_THREAD: usize = 16;
@@ -131,8 +131,8 @@ pub fn way(name: &str, problem: &Problem, settings: &Settings) -> Result<Box<dyn
     Ok(way)
 }
 
-/// Computes the whole matrix on the current rayon pool. `observe` is told how many of all rows are done; `None` if it breaks off.
-/// The same bits for any number of threads.
+/// Computes the whole matrix on the current rayon pool. `observe` is told how many of all rows are done; `None` if it breaks
+/// off. The same bits for any number of threads.
 pub fn compute(
     problem: &Problem,
     way: &dyn Way,

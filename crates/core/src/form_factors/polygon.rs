@@ -23,8 +23,8 @@ impl Plane {
     }
 }
 
-/// The part of a convex polygon that lies in front of `plane`; points within `tolerance` [m] of it lie on it. Empty if no point is
-/// clearly in front.
+/// The part of a convex polygon that lies in front of `plane`; points within `tolerance` [m] of it lie on it. Empty if no
+/// point is clearly in front.
 pub fn clip(polygon: &[DVec3], plane: Plane, tolerance: f64) -> Vec<DVec3> {
     let heights: Vec<f64> = polygon.iter().map(|&p| plane.height(p)).collect();
     if heights.iter().all(|&h| h <= tolerance) {

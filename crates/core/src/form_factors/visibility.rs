@@ -1,8 +1,9 @@
 //! How much of the light between two elements gets through what stands between them.
 //!
-//! A first look joins the middles of four cells of either: if all 16 rays are clear, or all blocked, so are the elements. Else
-//! both are cut into `divisions²` cells, a ray joins the middles of each pair, and the share is the sum of the form factors of the
-//! clear pairs over that of all. Biased: what is narrower than a cell may be missed. Cost: 16 or `divisions⁴` rays.
+//! A first look joins the middles of four cells of either: if all 16 rays are clear, or all blocked, so are the elements.
+//! Else both are cut into `divisions²` cells, a ray joins the middles of each pair, and the share is the sum of the form
+//! factors of the clear pairs over that of all. Biased: what is narrower than a cell may be missed. Cost: 16 or `divisions⁴`
+//! rays.
 
 use super::contour::point_to_polygon;
 use super::polygon::{Plane, centroid, clip, grid};
@@ -33,8 +34,8 @@ impl Visibility {
         Err(Error::Parameter { name: "visibility", value: divisions.to_string(), allowed })
     }
 
-    /// Share, from 0 to 1, of the light between two elements that nothing blocks. They are given by their triangles, corners and planes;
-    /// only parts in front of the other's plane count.
+    /// Share, from 0 to 1, of the light between two elements that nothing blocks. They are given by their triangles, corners
+    /// and planes; only parts in front of the other's plane count.
     pub fn share(
         self,
         problem: &Problem,

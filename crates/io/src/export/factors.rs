@@ -1,9 +1,9 @@
 //! Writers of form factors: sparse matrices, entry (i, j) the share of the light leaving element i that reaches j.
 //!
-//! `.npz` has the arrays of SciPy's `save_npz` in compressed sparse rows (`data`, `indices`, `indptr`, `shape`, `format`), and beside
-//! them `area` [m²], `std_error` in the order of `data` if there is one, and `parameters` as text. `.csv` has a line for each entry,
-//! `i,j,factor[,std_error]`, numbers from 0. `.mtx` is MatrixMarket's coordinate format (Boisvert, Pozo & Remington 1996), numbers
-//! from 1.
+//! `.npz` has the arrays of SciPy's `save_npz` in compressed sparse rows (`data`, `indices`, `indptr`, `shape`, `format`),
+//! and beside them `area` [m²], `std_error` in the order of `data` if there is one, and `parameters` as text. `.csv` has a
+//! line for each entry, `i,j,factor[,std_error]`, numbers from 0. `.mtx` is MatrixMarket's coordinate format (Boisvert, Pozo
+//! & Remington 1996), numbers from 1.
 
 use super::cannot_encode;
 use super::npz::Archive;

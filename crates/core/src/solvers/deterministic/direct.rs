@@ -4,8 +4,8 @@
 //! (1 - F rho) E = F Be,      for each channel
 //! ```
 //!
-//! Goral, Torrance, Greenberg & Battaile 1984. Biased by the form factors and the constant elements only. Cost: n³ for each channel,
-//! and 8 n² bytes for those that run at the same time; so at most 4000 elements.
+//! Goral, Torrance, Greenberg & Battaile 1984. Biased by the form factors and the constant elements only. Cost: n³ for each
+//! channel, and 8 n² bytes for those that run at the same time; so at most 4000 elements.
 
 use super::Settings;
 use super::lu;
@@ -30,8 +30,8 @@ pub struct Direct {
 /// The solver.
 ///
 /// # Errors
-/// Those of [`MatrixSolver::new`]; [`Error::Parameter`] for more than 4000 elements, or a surface that reflects all it receives: then
-/// there may be no solution.
+/// Those of [`MatrixSolver::new`]; [`Error::Parameter`] for more than 4000 elements, or a surface that reflects all it
+/// receives: then there may be no solution.
 pub fn solver(problem: &Problem, settings: &Settings) -> Result<MatrixSolver<Direct>, Error> {
     let refuse = |name, value: String, allowed| Err(Error::Parameter { name, value, allowed });
     let mesh = &problem.mesh;

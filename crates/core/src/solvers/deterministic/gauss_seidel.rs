@@ -4,10 +4,10 @@
 //! E_i <- (Σ_{j != i} F_ij B_j + F_ii Be_i) / (1 - rho_i F_ii),      B_i <- Be_i + rho_i E_i,      i = 1, 2, ... n
 //! ```
 //!
-//! About half the sweeps of Jacobi's, but each element waits for the one before. So the work is cut in blocks: what a block gathers from
-//! outside of it is summed on all threads, what its elements gather from each other in turn. That is the sequential method in
-//! another order of addition. Cohen & Greenberg 1985. Biased by the form factors and the constant elements only. Cost: all form factors
-//! once a sweep.
+//! About half the sweeps of Jacobi's, but each element waits for the one before. So the work is cut in blocks: what a block
+//! gathers from outside of it is summed on all threads, what its elements gather from each other in turn. That is the
+//! sequential method in another order of addition. Cohen & Greenberg 1985. Biased by the form factors and the constant
+//! elements only. Cost: all form factors once a sweep.
 
 use super::Settings;
 use super::matrix_solver::{MOST_SWEEPS, MatrixSolver, Method, landing, light_of};

@@ -6,10 +6,10 @@
 //! incremental   A_j E_j += Σ_i A_i D_i F_ij           every element distributes what it has not distributed yet, D
 //! ```
 //!
-//! After k iterations all three hold the light of at most k bounces, the same to rounding. Converges if reflectivities are below one; the
-//! unshot power falls by the mean reflectivity each time. Biased by the form factors and the constant elements only. Cost: all
-//! form factors once an iteration. Goral et al. 1984 (gathering); Neumann et al. 1995 and Shirley 1991 have the shooting forms with
-//! random numbers.
+//! After k iterations all three hold the light of at most k bounces, the same to rounding. Converges if reflectivities are
+//! below one; the unshot power falls by the mean reflectivity each time. Biased by the form factors and the constant elements
+//! only. Cost: all form factors once an iteration. Goral et al. 1984 (gathering); Neumann et al. 1995 and Shirley 1991 have
+//! the shooting forms with random numbers.
 
 use super::Settings;
 use super::matrix_solver::{MOST_SWEEPS, MatrixSolver, Method, landing, light_of};

@@ -1,7 +1,7 @@
 //! Dense linear systems by LU decomposition with partial pivoting (Golub & Van Loan, Matrix Computations, 3.4).
 //!
-//! Exact but for rounding. Cost: 2/3 n³ operations and 8 n² bytes. The rows below a pivot are eliminated on all threads, each by the same
-//! operations in the same order: the same bits for any number of them.
+//! Exact but for rounding. Cost: 2/3 n³ operations and 8 n² bytes. The rows below a pivot are eliminated on all threads, each
+//! by the same operations in the same order: the same bits for any number of them.
 
 use rayon::prelude::*;
 

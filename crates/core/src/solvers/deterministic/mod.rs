@@ -1,12 +1,13 @@
-//! Deterministic baselines: the radiosity system solved without random numbers. What the stochastic solvers are measured against.
+//! Deterministic baselines: the radiosity system solved without random numbers. What the stochastic solvers are measured
+//! against.
 //!
 //! ```text
 //! B_i = Be_i + rho_i E_i,      E_i = Σ_j F_ij B_j
 //! ```
 //!
-//! The first five work on a matrix of form factors, which grows like the square of the number of elements; the last two do not need
-//! one. All have elements of constant radiosity. They know no error bars ([`crate::Solution::std_error`] is NaN) and no lights
-//! without extent.
+//! The first five work on a matrix of form factors, which grows like the square of the number of elements; the last two do
+//! not need one. All have elements of constant radiosity. They know no error bars ([`crate::Solution::std_error`] is NaN) and
+//! no lights without extent.
 //!
 //! Form factors are made reciprocal (see [`Settings::correction`]), so that no light is made or lost between two
 //! elements. What a row of them lacks to one has escaped, be it through an opening or by the error of the form factors.
@@ -109,10 +110,7 @@ pub const DETERMINISTIC: &[Entry] = &[
     },
     Entry {
         name: "hierarchical",
-        what: [
-            "links between clusters of elements, as fine as the power they carry asks for;",
-            "about n links, not n²",
-        ],
+        what: ["links between clusters of elements, as fine as the power they carry asks for;", "without a matrix"],
         source: "Hanrahan, Salzman & Aupperle 1991",
         make: |problem, settings| Ok(Box::new(hierarchical::Hierarchical::new(problem, settings)?)),
     },

@@ -4,12 +4,13 @@
 //! i = argmax A_i D_i;      for all j:  E_j += D_i A_i F_ij / A_j,   D_j += rho_j D_i A_i F_ij / A_j;      D_i = 0
 //! ```
 //!
-//! The row `F_ij` comes from hemicubes over element i and is forgotten again. Good pictures soon, a full solution late. Cohen, Chen,
-//! Wallace & Greenberg 1988; that it is Southwell's method showed Gortler, Cohen & Slusallek 1994. For display the unshot light
-//! may be added as if it were everywhere: the ambient term `Σ A D / Σ A · 1 / (1 - mean rho)`; the balance leaves it out.
+//! The row `F_ij` comes from hemicubes over element i and is forgotten again. Good pictures soon, a full solution late.
+//! Cohen, Chen, Wallace & Greenberg 1988; that it is Southwell's method showed Gortler, Cohen & Slusallek 1994. For display
+//! the unshot light may be added as if it were everywhere: the ambient term `Σ A D / Σ A · 1 / (1 - mean rho)`; the balance
+//! leaves it out.
 //!
-//! Biased: small elements fall between the pixels, and share the error of hemicubes. No light is lost: delta form factors sum to
-//! one. Cost: 3 R² rays a shot and O(n) memory.
+//! Biased: small elements fall between the pixels, and share the error of hemicubes. No light is lost: delta form factors sum
+//! to one. Cost: 3 R² rays a shot and O(n) memory.
 
 use super::system::{Light, Surfaces, luminance, plus, times, to_rgb};
 use super::{Settings, check, provenance};

@@ -60,8 +60,8 @@ impl System {
         self.factors.row(i).fold([0.0; 3], |sum, (j, f)| std::array::from_fn(|c| sum[c] + f * b[j][c]))
     }
 
-    /// Where the light of `irradiance` E went. Unshot is what arrives from the radiosities Be + rho E beyond E: the residual of the
-    /// system. What rows lack to one has escaped. Closes because form factors are reciprocal.
+    /// Where the light of `irradiance` E went. Unshot is what arrives from the radiosities Be + rho E beyond E: the residual
+    /// of the system. What rows lack to one has escaped. Closes because form factors are reciprocal.
     pub fn balance(&self, irradiance: &[Light]) -> Balance {
         let surfaces = &self.surfaces;
         let b: Vec<Light> = irradiance.iter().enumerate().map(|(i, &e)| surfaces.radiosity(i, e)).collect();

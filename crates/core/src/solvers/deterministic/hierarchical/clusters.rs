@@ -1,4 +1,5 @@
-//! Binary trees of clusters over the elements of each side of each triangle: halved across the longer extent, down to one element.
+//! Binary trees of clusters over the elements of each side of each triangle: halved across the longer extent, down to one
+//! element.
 
 use crate::Problem;
 use crate::form_factors::polygon::{centroid, element_corners, grid};

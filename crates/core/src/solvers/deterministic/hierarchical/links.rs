@@ -1,8 +1,9 @@
 //! Links between clusters, refined until none carries more power than allowed.
 //!
-//! A link exchanges `A_p F_pq`: between two elements that of the contour integrals, between larger clusters the mean of
-//! `cos cos vis / (pi r²)` over 16 pairs of points. It is refined, by halving its larger end, if the power it would carry unblocked, were
-//! all points as well placed as the best pair, is beyond the limit; where the view is partly blocked the limit is a quarter.
+//! A link exchanges `A_p F_pq`: between two elements that of the contour integrals, between larger clusters the mean of `cos
+//! cos vis / (pi r²)` over 16 pairs of points. It is refined, by halving its larger end, if the power it would carry
+//! unblocked, were all points as well placed as the best pair, is beyond the limit; where the view is partly blocked the
+//! limit is a quarter.
 
 use super::clusters::{Cluster, SAMPLES};
 use crate::Problem;

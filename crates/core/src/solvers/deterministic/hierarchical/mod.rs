@@ -8,11 +8,13 @@
 //! pull     B of a cluster is the mean over its halves, weighted by area
 //! ```
 //!
-//! Gathering, push and pull are repeated until nothing changes; then links are refined again for the light that is there now, and so on until none
-//! needs to be. Clusters are those of [`clusters`], links those of [`links`]. Biased: a link takes its ends for
-//! a few points of even radiosity, so an error remains that falls with [`Settings::link_power`]: in rooms of 1000 elements 2 to 4 % of the
-//! irradiance (RMS) at the default of 10^-5, 5 to 7 % at 10^-4. No light is made or lost between clusters; what the links of an element lack to one, or have beyond it, counts as
-//! escaped. Cost: about n links, beside one for each pair of triangles that face each other.
+//! Gathering, push and pull are repeated until nothing changes; then links are refined again for the light that is there now,
+//! and so on until none needs to be. Clusters are those of [`clusters`], links those of [`links`]. Biased: a link takes its
+//! ends for a few points of even radiosity, so an error remains that falls with [`Settings::link_power`]: in rooms of 1000
+//! elements 2 to 4 % of the irradiance (RMS) at the default of 10^-5, 5 to 7 % at 10^-4. No light is made or lost between
+//! clusters; what the links of an element lack to one, or have beyond it, counts as escaped. Cost: links, whose
+//! number depends on the limit and hardly on n once elements are finer than it asks for, beside one for each pair of triangles
+//! that face each other.
 
 mod clusters;
 mod links;
