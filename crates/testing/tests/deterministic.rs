@@ -194,7 +194,7 @@ fn hierarchical_radiosity_converges_as_links_get_finer() {
     for room in [problem("box", 1000), problem("cubes", 800)] {
         let reference = as_exact(&solve(&room, "gauss-seidel", &precise()));
         let error = |link_power| {
-            let solution = solve(&room, "hierarchical", &Settings { link_power, ..precise() });
+            let solution = solve(&room, "hierarchical", &Settings { link_power, unshot: 1e-6, ..Settings::default() });
             assert_balanced(&room, &solution);
             difference(&room, &solution, &reference)
         };
