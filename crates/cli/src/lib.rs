@@ -6,6 +6,7 @@
 mod arguments;
 mod check;
 mod compare;
+mod factors;
 mod failure;
 mod input;
 mod interrupt;
@@ -56,6 +57,7 @@ enum Command {
     Check(check::Check),
     Compare(compare::Compare),
     Scene(scene::SceneCommand),
+    Factors(factors::Factors),
     List(list::List),
 }
 
@@ -80,6 +82,7 @@ fn execute(command: Option<Command>) -> Result<u8, Failure> {
         Some(Command::Check(check)) => check.run(),
         Some(Command::Compare(compare)) => compare.run(),
         Some(Command::Scene(scene)) => scene.run(),
+        Some(Command::Factors(factors)) => factors.run(),
         Some(Command::List(list)) => list.run(),
     }
 }

@@ -1,11 +1,12 @@
 //! All the mathematics of isolux: view-independent diffuse global illumination by Monte Carlo radiosity.
 //!
 //! The crate opens no file, prints nothing and reads no clock. Imports run one way:
-//! `math -> {scene, sampling} -> mesh -> geometry -> transport -> solvers -> solution -> view`
+//! `math -> {scene, sampling} -> mesh -> geometry -> transport -> form_factors -> solvers -> solution -> view`
 //! (see ARCHITECTURE.md). Units are SI and photometric throughout: metres, lumens, lux (lm/m²), candela.
 
 pub mod compare;
 mod error;
+pub mod form_factors;
 pub mod geometry;
 pub mod math;
 pub mod mesh;

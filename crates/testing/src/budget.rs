@@ -21,6 +21,7 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("form factors of rectangles by bundles", 6),
     ("form factors of the sphere by global lines", 1),
     ("directions of global lines at an element", 2),
+    ("form factor matrix by local lines", 4),
     ("projections of a fair coin", 12),
     ("furnace: box", 2 * comparisons(6)),
     ("furnace: cubes", 2 * comparisons(9)),

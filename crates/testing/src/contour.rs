@@ -1,34 +1,12 @@
-//! Form factors between polygons that see all of each other, exactly, by the double contour integral
-//!
-//! ```text
-//! F_12 = 1 / (2 pi A_1)  ∮ ∮  ln |x - y|  dx · dy        (Sparrow 1963)
-//! ```
-//!
-//! over the borders of both, counter-clockwise seen from their fronts. The integral along an edge of the second is closed
-//! (an elementary antiderivative), that along an edge of the first is by the double exponential rule (Takahasi & Mori 1974), which
-//! bears the singularities where polygons share a corner or an edge.
+//! Exact answers of convex rooms: form factors between elements that see all of each other, by the contour integrals of
+//! [`isolux_core::form_factors::contour`], without its rays, and the dense system that follows.
 
 use crate::ensemble::Exact;
 use crate::exact::solve;
-use glam::DVec3;
 use isolux_core::Problem;
+use isolux_core::form_factors::contour::exchange_area;
+pub use isolux_core::form_factors::polygon::element_corners;
 use isolux_core::math::Rgb;
-use std::f64::consts::{FRAC_PI_2, TAU};
-
-/// `A_1 F_12` [m²] of two plane polygons, nothing between them.
-pub fn exchange_area(first: &[DVec3], second: &[DVec3]) -> f64 {
-    let along = |(a, b): (DVec3, DVec3)| {
-        let over_second = |x: DVec3| edges(second).map(|edge| (b - a).dot(log_distance(x, edge))).sum::<f64>();
-        integrate(|s| over_second(a + (b - a) * s))
-    };
-    edges(first).map(along).sum::<f64>() / TAU
-}
-
-/// Corners [m] of an element of flat triangles.
-pub fn element_corners(problem: &Problem, e: u32) -> [DVec3; 3] {
-    let [a, b, c] = problem.scene.corners(problem.mesh.triangle(e)).map(|p| p.as_dvec3());
-    problem.mesh.corners(e).map(|uv| a + (b - a) * f64::from(uv.x) + (c - a) * f64::from(uv.y))
-}
 
 /// The exact irradiances of the `N` elements of a convex room.
 ///
@@ -65,39 +43,12 @@ pub fn form_factors<const N: usize>(problem: &Problem) -> Vec<[f64; N]> {
     (0..N).map(row).collect()
 }
 
-fn edges(polygon: &[DVec3]) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
-    (0..polygon.len()).map(|k| (polygon[k], polygon[(k + 1) % polygon.len()]))
-}
-
-/// `∫ ln |x - y| dy` along the edge from a to b.
-fn log_distance(x: DVec3, (a, b): (DVec3, DVec3)) -> DVec3 {
-    let (direction, length) = ((b - a).normalize(), (b - a).length());
-    let along = (x - a).dot(direction);
-    let height = (x - a - direction * along).length();
-    let antiderivative = |t: f64| {
-        let squared = t * t + height * height;
-        let angle = if height > 0.0 { height * (t / height).atan() } else { 0.0 };
-        if squared > 0.0 { 0.5 * t * squared.ln() - t + angle } else { 0.0 }
-    };
-    direction * (antiderivative(length - along) - antiderivative(-along))
-}
-
-/// The integral of `f` over [0, 1]; singularities at the ends are allowed.
-fn integrate(f: impl Fn(f64) -> f64) -> f64 {
-    const STEP: f64 = 1.0 / 16.0;
-    let node = |k: i32| {
-        let t = STEP * f64::from(k);
-        let (inner, slope) = (FRAC_PI_2 * t.sinh(), FRAC_PI_2 * t.cosh());
-        0.5 * slope / inner.cosh().powi(2) * f(1.0 / (1.0 + (-2.0 * inner).exp()))
-    };
-    STEP * (-56..=56).map(node).sum::<f64>()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::exact::{parallel_rectangles, perpendicular_rectangles};
     use crate::scenes::problem;
+    use glam::DVec3;
 
     fn polygon<const N: usize>(corners: [[f64; 3]; N]) -> [DVec3; N] {
         corners.map(DVec3::from)

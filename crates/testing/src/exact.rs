@@ -3,8 +3,7 @@
 //! Form factors are in row convention, `F12` is the share of what leaves 1 that reaches 2. Formulas as catalogued by
 //! Howell, A Catalog of Radiation Heat Transfer Configuration Factors (C-11, C-14, C-41).
 
-use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// `F12` of unit squares one unit apart with a square blocker over the quarter [0, 0.5]² at half height.
 pub const BLOCKED_SQUARES: f64 = 0.149_868_67;
@@ -40,17 +39,6 @@ pub fn coaxial_discs(r1: f64, r2: f64, h: f64) -> f64 {
 /// `F12` of two infinitely long plates of equal width that meet at `angle` [rad].
 pub fn wedge(angle: f64) -> f64 {
     1.0 - (0.5 * angle).sin()
-}
-
-/// Form factor from a small patch at `point` with unit `normal` to a polygon that lies in front of it, by Lambert's contour
-/// formula `F = (1 / 2 pi) sum of gamma_k (n . g_k)`. Positive if the patch sees the polygon counter-clockwise.
-pub fn point_to_polygon(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
-    let edge = |k: usize| {
-        let (a, b) = (corners[k] - point, corners[(k + 1) % corners.len()] - point);
-        let cross = a.cross(b);
-        cross.length().atan2(a.dot(b)) * normal.dot(cross.normalize_or_zero())
-    };
-    (0..corners.len()).map(edge).sum::<f64>() / -TAU
 }
 
 /// Form factors `F[i][j]` between the faces of a box, in the order left, right, floor, ceiling, back, front.
@@ -112,6 +100,9 @@ pub fn solve<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
+    use isolux_core::form_factors::contour::point_to_polygon;
+    use std::f64::consts::TAU;
 
     #[track_caller]
     fn assert_near(found: f64, exact: f64) {

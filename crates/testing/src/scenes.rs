@@ -2,11 +2,13 @@
 
 use crate::ensemble::Exact;
 use crate::exact::sphere_radiosities;
+use glam::Vec3;
 use isolux_core::Problem;
 use isolux_core::math::Rgb;
 use isolux_core::mesh::Resolution;
 use isolux_core::scene::builtin::builtin;
-use isolux_core::scene::{Scene, Triangle};
+use isolux_core::scene::builtin::shapes::Builder;
+use isolux_core::scene::{Material, Scene, Triangle};
 
 /// A built-in scene cut into about `elements` elements.
 ///
@@ -30,6 +32,17 @@ pub fn scene(name: &str) -> Scene {
 /// If it cannot be cut.
 pub fn cut(scene: Scene, elements: u64) -> Problem {
     Problem::new(scene, Resolution::Elements(elements)).expect("a scene that can be cut")
+}
+
+/// Rectangles given by their corners, counter-clockwise from the front, one object each.
+pub fn rectangles(corners: &[[[f32; 3]; 4]]) -> Scene {
+    let mut builder = Builder::new("rectangles");
+    let white = builder.material(Material::diffuse("white", Rgb::grey(0.5)));
+    for quad in corners {
+        builder.object("rectangle", white);
+        builder.polygon(&quad.map(Vec3::from));
+    }
+    builder.finish()
 }
 
 /// Makes a closed scene a white furnace: everything emits what it does not reflect, so radiosity is 1 everywhere.

@@ -13,8 +13,9 @@ const LAYERS: &[(usize, &[&str])] = &[
     (3, &["geometry"]),
     (4, &["problem"]),
     (5, &["transport", "solution"]),
-    (6, &["solvers"]),
-    (7, &["run", "view", "report", "compare"]),
+    (6, &["form_factors"]),
+    (7, &["solvers"]),
+    (8, &["run", "view", "report", "compare"]),
 ];
 
 /// Names re-exported at the root, and where they live.

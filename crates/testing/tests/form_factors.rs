@@ -6,11 +6,12 @@ use isolux_core::geometry::{Geometry, Hit, Ray};
 use isolux_core::math::Frame;
 use isolux_core::math::warp::{square_to_cosine_hemisphere, square_to_triangle};
 use isolux_core::mesh::Resolution;
-use isolux_core::scene::builtin::{builtin, shapes::Builder};
-use isolux_core::scene::{Material, Scene};
+use isolux_core::scene::Scene;
+use isolux_core::scene::builtin::builtin;
 use isolux_testing::budget::{assert_chi2, assert_z, refutes};
 use isolux_testing::exact::{BLOCKED_SQUARES, parallel_rectangles, perpendicular_rectangles};
 use isolux_testing::random::Random;
+use isolux_testing::scenes::rectangles;
 use isolux_testing::statistics::{chi_square, p_of_chi2, p_of_z, z_of_count};
 
 /// What a line from a uniform point `uv` of a triangle in direction `local` about its normal hits.
@@ -75,17 +76,6 @@ fn uniform_points_of_an_octant_are_uniform_on_the_sphere() {
     // The fault: a map of the square to the triangle that is not uniform.
     let (chi2, dof) = count(&|s| Vec2::new(s.x, (1.0 - s.x) * s.y));
     assert!(refutes(p_of_chi2(chi2, dof)));
-}
-
-/// Rectangles given by their corners, counter-clockwise from the front, one object each.
-fn rectangles(corners: &[[[f32; 3]; 4]]) -> Scene {
-    let mut builder = Builder::new("rectangles");
-    let white = builder.material(Material::diffuse("white", isolux_core::math::Rgb::grey(0.5)));
-    for quad in corners {
-        builder.object("rectangle", white);
-        builder.polygon(&quad.map(Vec3::from));
-    }
-    builder.finish()
 }
 
 /// Deviation of the share of lines from the first rectangle that reach the front of the second.

@@ -2,6 +2,7 @@
 
 mod allocation;
 pub mod budget;
+pub mod deterministic;
 mod gathering;
 mod replicates;
 mod shooting;
@@ -9,6 +10,7 @@ pub mod stochastic_jacobi;
 
 pub use stochastic_jacobi::StochasticJacobi;
 
+use crate::form_factors::Row;
 use crate::transport::Spot;
 use crate::{Problem, Solution};
 use std::ops::Range;
@@ -46,6 +48,8 @@ pub struct Part {
     /// Flux [lm, luminance] that hit the back of a one-sided surface.
     pub back_face: f64,
     pub rays: u64,
+    /// Rows of a matrix, for solvers that need one: form factors, or links of a hierarchy.
+    pub rows: Vec<Row>,
 }
 
 /// Light that arrived on an element.

@@ -2,6 +2,7 @@
 
 mod csv;
 mod elements;
+pub mod factors;
 mod glb;
 pub mod glb_container;
 pub mod image;

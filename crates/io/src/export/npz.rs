@@ -24,7 +24,7 @@ pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> 
     let LitScene { problem, solution, .. } = lit;
     let (scene, mesh) = (&problem.scene, &problem.mesh);
     let n = mesh.len() as u64;
-    let mut archive = Archive(zip::ZipWriter::new(Cursor::new(Vec::new())));
+    let mut archive = Archive::new();
 
     let corners = mesh.elements().flat_map(|e| elements::corners(problem, e)).flat_map(|p| p.to_array());
     archive.floats("vertices", &[n, 3, 3], corners)?;
@@ -45,12 +45,21 @@ pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> 
     archive.texts("names", &[names.len() as u64], &names)?;
     archive.texts("summary", &[], &[json::summary(problem, solution, &options.extras).to_string()])?;
 
-    Ok(archive.0.finish().map_err(cannot_encode("npz"))?.into_inner())
+    archive.finish()
 }
 
-struct Archive(zip::ZipWriter<Cursor<Vec<u8>>>);
+/// Arrays in a ZIP archive in memory.
+pub(super) struct Archive(zip::ZipWriter<Cursor<Vec<u8>>>);
 
 impl Archive {
+    pub(super) fn new() -> Archive {
+        Archive(zip::ZipWriter::new(Cursor::new(Vec::new())))
+    }
+
+    pub(super) fn finish(self) -> Result<Vec<u8>, Error> {
+        Ok(self.0.finish().map_err(cannot_encode("npz"))?.into_inner())
+    }
+
     fn floats(&mut self, name: &str, shape: &[u64], values: impl Iterator<Item = f32>) -> Result<(), Error> {
         self.array(name, "<f4", shape, &values.flat_map(f32::to_le_bytes).collect::<Vec<u8>>())
     }
@@ -60,7 +69,7 @@ impl Archive {
     }
 
     /// Texts of the same width, UTF-32, filled up with zeros.
-    fn texts(&mut self, name: &str, shape: &[u64], texts: &[String]) -> Result<(), Error> {
+    pub(super) fn texts(&mut self, name: &str, shape: &[u64], texts: &[String]) -> Result<(), Error> {
         let width = texts.iter().map(|text| text.chars().count()).max().unwrap_or(0).max(1);
         let fill = |text: &String| text.chars().map(u32::from).chain(std::iter::repeat(0)).take(width).collect();
         let codes: Vec<u32> = texts.iter().flat_map(|text| -> Vec<u32> { fill(text) }).collect();
@@ -73,7 +82,7 @@ impl Archive {
     }
 
     /// An array of NumPy's type `kind`.
-    fn array(&mut self, name: &str, kind: &str, shape: &[u64], bytes: &[u8]) -> Result<(), Error> {
+    pub(super) fn array(&mut self, name: &str, kind: &str, shape: &[u64], bytes: &[u8]) -> Result<(), Error> {
         let kind = kind.parse().map_err(cannot_encode("npz"))?;
         let large = bytes.len() as u64 >= u64::from(u32::MAX) / 2;
         let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default()).large_file(large);
