@@ -100,13 +100,14 @@ fn hemicubes_converge_to_the_exact_form_factors() {
 }
 
 #[test]
-fn local_lines_have_honest_standard_errors() {
-    const TEST: &str = "form factor matrix by local lines";
+fn lines_have_honest_standard_errors() {
     let settings = Settings { rays: 200_000, ..Settings::default() };
-    for (parts, exact) in cases() {
+    let tests =
+        [("form factor matrix by local lines", "local-lines"), ("form factor matrix by global lines", "global-lines")];
+    for ((test, name), (parts, exact)) in tests.into_iter().flat_map(|test| cases().map(|case| (test, case))) {
         let problem = squares(parts, 6);
-        let (found, std_error) = between_objects(&problem, &matrix(&problem, "local-lines", settings));
-        assert_z(TEST, (found - exact) / std_error);
+        let (found, std_error) = between_objects(&problem, &matrix(&problem, name, settings));
+        assert_z(test, (found - exact) / std_error);
     }
     let faulty = with_fault(squares(&[FLOOR, ABOVE], 6), Fault::NarrowLobe(0.98));
     let (found, std_error) = between_objects(&faulty, &matrix(&faulty, "local-lines", settings));

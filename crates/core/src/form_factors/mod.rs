@@ -9,6 +9,7 @@
 
 pub mod contour;
 mod correction;
+mod global_lines;
 pub mod hemicube;
 mod local_lines;
 mod matrix;
@@ -17,6 +18,7 @@ mod visibility;
 
 pub use contour::Contour;
 pub use correction::Correction;
+pub use global_lines::GlobalLines;
 pub use hemicube::Hemicube;
 pub use local_lines::LocalLines;
 pub use matrix::{FormFactors, Reciprocity};
@@ -108,6 +110,12 @@ pub const WAYS: &[WayEntry] = &[
         what: "cosine-distributed lines from uniform points of each element, with standard errors",
         source: "Malley 1988",
         make: |_, settings| Ok(Box::new(LocalLines::new(settings)?)),
+    },
+    WayEntry {
+        name: "global-lines",
+        what: "lines across the whole scene, each of whose spans counts for both its ends, with standard errors",
+        source: "Sbert 1993",
+        make: |problem, settings| Ok(Box::new(GlobalLines::new(problem, settings)?)),
     },
 ];
 
