@@ -27,6 +27,7 @@ Ways:
   contour      contour integrals, exact where nothing blocks the view; where something does, on a grid of points
   hemicube     rays through the pixels of half a cube over the middle of each element
   local-lines  cosine-distributed lines from each element; every form factor gets a standard error
+  global-lines lines across the whole scene, which serve both ends of each span; with standard errors, reciprocal
 
 Entry (i, j) is the share of the light leaving element i that reaches element j. Rows sum to 1 in a closed scene. The \
 elements are those of 'isolux solve' with the same --elements. Without -o only the summary is printed.
@@ -52,7 +53,7 @@ pub struct Factors {
     #[arg(short, long = "output", value_name = "OUT")]
     outputs: Vec<PathBuf>,
 
-    /// How they are computed: contour, hemicube, local-lines
+    /// How they are computed: contour, hemicube, local-lines, global-lines
     #[arg(long, value_name = "WAY", default_value = WAYS[0].name, value_parser = parse_way)]
     by: &'static str,
 
@@ -64,7 +65,7 @@ pub struct Factors {
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     max_edge: Option<f32>,
 
-    /// local-lines: lines from each element
+    /// local-lines and global-lines: lines from each element (of mean area)
     #[arg(long, value_name = "N", default_value = "4096", value_parser = parse_rays)]
     rays: u32,
 

@@ -11,6 +11,7 @@ mod failure;
 mod input;
 mod interrupt;
 mod list;
+mod method;
 mod numbers;
 mod output;
 mod progress;

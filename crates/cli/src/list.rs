@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use crate::terminal;
 use isolux_core::sampling::SEQUENCES;
 use isolux_core::scene::builtin::BUILT_IN;
-use isolux_core::solvers::stochastic_jacobi;
+use isolux_core::solvers::deterministic::{self, DETERMINISTIC};
+use isolux_core::solvers::monte_carlo::{METHODS, Method, NamedMethod};
 use isolux_io::{export, import};
 
 const EXAMPLES: &str = "\
@@ -72,12 +73,22 @@ fn formats() -> String {
 }
 
 fn methods() -> String {
-    format!(
-        "Methods\n  {}  shoots light until none is left, shoots again, gathers on small elements;\n  {:17}  \
-         independent replicates give every element its standard error\n",
-        stochastic_jacobi::NAME,
-        ""
-    )
+    let mut text = "Methods of Monte Carlo, for --method; the axes below each may be changed\n".to_owned();
+    for NamedMethod { name, what, source, method } in METHODS {
+        text += &format!("  {name:<18} {}\n  {:<18} {}\n  {:<18} {source}\n", what[0], "", what[1], "");
+        text += &format!("  {:<18} {}\n", "", point(method));
+    }
+    text += "\nDeterministic methods, for --method\n";
+    for deterministic::Entry { name, what, source, .. } in DETERMINISTIC {
+        text += &format!("  {name:<18} {}\n  {:<18} {}\n  {:<18} {source}\n", what[0], "", what[1], "");
+    }
+    text
+}
+
+/// The options that ask for a point of the axes.
+fn point(method: &Method) -> String {
+    let axes = method.parameters();
+    axes.iter().map(|(axis, value)| format!("--{axis} {value}")).collect::<Vec<_>>().join(" ")
 }
 
 fn sequences() -> String {

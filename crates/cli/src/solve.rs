@@ -3,6 +3,7 @@
 use crate::arguments::{PictureArguments, SceneArguments, ThreadArguments};
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
+use crate::method::MethodArguments;
 use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
 use crate::progress::{Display, ProgressArguments, Watch};
@@ -10,13 +11,17 @@ use crate::summary::{Ended, Summary};
 use crate::{input, terminal};
 use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
-use isolux_core::sampling::address::Address;
-use isolux_core::solvers::stochastic_jacobi::{Budget, Settings, StochasticJacobi};
+use isolux_core::solvers::Solver;
+use isolux_core::solvers::deterministic;
+use isolux_core::solvers::monte_carlo::{Budget, MonteCarlo, Settings};
 use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+
+/// Elements that deterministic methods aim at unless said otherwise: their cost grows with the square.
+const DETERMINISTIC_ELEMENTS: u64 = 2000;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -24,6 +29,8 @@ Examples:
   isolux solve room.glb -o lit.glb -o lit.png -o lit.isolux
   isolux solve room.glb --elements 1e6 --time 10min -o lit.isolux
   isolux solve labyrinth:rho=0.9 --rays 50M --seed 7 --json > summary.json
+  isolux solve cubes --method random-walk --estimator absorption --sequence halton
+  isolux solve cubes --method gauss-seidel --factors hemicube --elements 1000
 
 Formats, by the extension of -o: 'isolux list formats' explains them.
 
@@ -49,7 +56,8 @@ pub struct Solve {
     #[arg(short, long = "output", value_name = "OUT")]
     outputs: Vec<PathBuf>,
 
-    /// Number of elements to aim at, like 50000 or 1e6 [default: one for each side of a triangle, and 400k more]
+    /// Number of elements to aim at, like 50000 or 1e6 [default: one for each side of a triangle, and 400k
+    /// more; 2000 for deterministic methods]
     #[arg(long, value_name = "N", value_parser = parse_count, conflicts_with = "max_edge")]
     elements: Option<u64>,
 
@@ -76,14 +84,13 @@ pub struct Solve {
     #[arg(long, value_name = "R", default_value_t = Settings::default().replicates)]
     replicates: u32,
 
-    /// Which random numbers a ray draws: per-iteration is unbiased, per-element a little more even
-    #[arg(long, default_value = Address::default().name(), value_parser = parse_address)]
-    address: Address,
-
     /// From where on an element reflected light leaves: where-landed leaks four times less under walls and behind
     /// frames, whole-element is the radiosity system to the letter
     #[arg(long, default_value = Leaving::default().name(), value_parser = parse_leaving)]
     leaving: Leaving,
+
+    #[command(flatten)]
+    method: MethodArguments,
 
     #[command(flatten)]
     picture: PictureArguments,
@@ -104,11 +111,6 @@ pub struct Solve {
     progress: ProgressArguments,
 }
 
-fn parse_address(text: &str) -> Result<Address, String> {
-    let found = Address::ALL.into_iter().find(|address| address.name() == text);
-    found.ok_or_else(|| format!("it is one of {}", Address::ALL.map(Address::name).join(", ")))
-}
-
 fn parse_leaving(text: &str) -> Result<Leaving, String> {
     let found = Leaving::ALL.into_iter().find(|leaving| leaving.name() == text);
     found.ok_or_else(|| format!("it is one of {}", Leaving::ALL.map(Leaving::name).join(", ")))
@@ -117,6 +119,21 @@ fn parse_leaving(text: &str) -> Result<Leaving, String> {
 fn parse_objects(text: &str) -> Result<usize, String> {
     let number = if text == "all" { Ok(usize::MAX) } else { text.parse() };
     number.map_err(|_| "give a number or 'all'".to_owned())
+}
+
+/// A method with what it is told.
+enum Chosen {
+    MonteCarlo(Settings),
+    Deterministic(String, deterministic::Settings),
+}
+
+impl Chosen {
+    fn solver(&self, problem: &Problem) -> Result<Box<dyn Solver>, Failure> {
+        match self {
+            Chosen::MonteCarlo(settings) => Ok(Box::new(MonteCarlo::new(problem, *settings)?)),
+            Chosen::Deterministic(name, settings) => Ok(deterministic::solver(name, problem, settings)?),
+        }
+    }
 }
 
 impl Solve {
@@ -136,16 +153,17 @@ impl Solve {
     }
 
     fn work_watched(&self, outputs: &Outputs, interrupt: &Interrupt, display: &mut Display) -> Result<u8, Failure> {
+        let chosen = self.chosen()?;
         display.stage("reading the scene");
         let scene = input::scene(&self.scene.scene, &self.scene.options())?;
         self.picture.check_camera(&scene)?;
         display.stage("cutting the surfaces into elements");
         let problem = Problem::new(scene, self.resolution())?;
-        let mut solver = StochasticJacobi::new(&problem, self.settings())?;
+        let mut solver = chosen.solver(&problem)?;
 
         interrupt.keep_result();
         let start = Instant::now();
-        let (solution, ended) = self.solve(&mut solver, &problem, display, start, interrupt);
+        let (solution, ended) = self.solve(solver.as_mut(), &problem, display, start, interrupt);
         let seconds = start.elapsed().as_secs_f64();
         drop(solver);
 
@@ -161,22 +179,41 @@ impl Solve {
         match (self.elements, self.max_edge) {
             (Some(elements), _) => Resolution::Elements(elements),
             (None, Some(edge)) => Resolution::MaxEdge(edge),
+            (None, None) if self.method.is_deterministic() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
             (None, None) => Resolution::default(),
         }
     }
 
-    fn settings(&self) -> Settings {
+    /// The method that was asked for, before there is anything to solve.
+    fn chosen(&self) -> Result<Chosen, Failure> {
+        if !self.method.is_deterministic() {
+            return Ok(Chosen::MonteCarlo(self.settings()?));
+        }
+        if self.rays.is_some() {
+            let what = format!("{} draws no random numbers: it has no --rays", self.method.name());
+            return Err(Failure::usage(what).with_help("--time limits it, and --unshot says how far it goes"));
+        }
+        Ok(Chosen::Deterministic(self.method.name().to_owned(), self.method.deterministic(self.seed)?))
+    }
+
+    fn settings(&self) -> Result<Settings, Failure> {
         let budget = match (self.rays, self.time) {
             (Some(rays), _) => Budget::Rays(rays),
             (None, Some(_)) => Budget::Endless,
             (None, None) => Budget::Heuristic,
         };
-        Settings { seed: self.seed, budget, replicates: self.replicates, address: self.address, leaving: self.leaving }
+        Ok(Settings {
+            method: self.method.method()?,
+            seed: self.seed,
+            budget,
+            replicates: self.replicates,
+            leaving: self.leaving,
+        })
     }
 
     fn solve(
         &self,
-        solver: &mut StochasticJacobi,
+        solver: &mut dyn Solver,
         problem: &Problem,
         display: &mut Display,
         start: Instant,

@@ -1,10 +1,11 @@
 //! What a solve came to: for people in words and tables, for programs as one JSON object.
 
-use crate::numbers::{count, decimals_for, percent};
+use crate::numbers::{count, decimals_for, percent, time};
 use crate::output::{self, Written};
 use crate::progress::rays_in_words;
 use crate::report::Table;
 use isolux_core::report::{ObjectSummary, per_object};
+use isolux_core::solvers::deterministic::DETERMINISTIC;
 use isolux_core::{Problem, Solution};
 use isolux_io::export::json;
 use serde_json::{Map, Value, json};
@@ -54,7 +55,7 @@ impl Summary<'_> {
         if self.ended == Ended::Interrupted {
             warnings.push("interrupted: this is the best result so far, less than was asked for".to_owned());
         }
-        if self.solution.work.replicates < 2 && balance.emitted > 0.0 {
+        if self.solution.work.replicates < 2 && balance.emitted > 0.0 && !self.is_deterministic() {
             warnings.push(
                 "there is no error estimate yet: it takes two complete solutions; give more time or fewer elements"
                     .to_owned(),
@@ -63,9 +64,16 @@ impl Summary<'_> {
         warnings
     }
 
+    fn is_deterministic(&self) -> bool {
+        DETERMINISTIC.iter().any(|entry| entry.name == self.solution.provenance.method)
+    }
+
     /// What is good to know: what the reader of the scene assumed, and where light went.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = self.problem.scene.remarks.clone();
+        if self.is_deterministic() {
+            notes.push("a deterministic method has no error bars; a finer run tells how far it is off".to_owned());
+        }
         let escaped = self.solution.balance.escaped / self.solution.balance.emitted;
         if escaped > NOTICEABLE {
             notes.push(format!("{} of the light left the scene through openings", percent(escaped)));
@@ -95,7 +103,11 @@ impl Summary<'_> {
             crate::terminal::harmless(&scene.name),
             count(self.problem.mesh.len() as u64),
             count(scene.triangles.len() as u64),
-            rays_in_words(work.rays, self.seconds),
+            if work.rays > 0 {
+                rays_in_words(work.rays, self.seconds)
+            } else {
+                format!("solved in {}", time(self.seconds))
+            },
         );
         text +=
             &format!(", {} {}, seed {}\n", self.threads, plural(self.threads, "thread"), self.solution.provenance.seed);

@@ -19,6 +19,10 @@ pub enum Error {
     #[error("there is no {kind} called '{name}'; did you mean '{nearest}'?")]
     UnknownName { kind: &'static str, name: String, nearest: String },
 
+    /// A combination of axes without meaning; the texts say why, and what is nearest.
+    #[error("this combination has no meaning: {what}; nearest is {nearest}")]
+    Meaningless { what: &'static str, nearest: &'static str },
+
     /// Two solutions that have nothing in common; the text says why.
     #[error("the two solutions cannot be compared: {what}")]
     NotComparable { what: &'static str },

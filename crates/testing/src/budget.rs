@@ -13,6 +13,10 @@ pub const FALSE_ALARM: f64 = 1e-6;
 
 /// All statistical tests and how many comparisons each makes at most.
 pub const REGISTER: &[(&str, u32)] = &[
+    // So many methods with so many sequences in a box of six faces, and the methods alone in a sphere of eight octants.
+    ("battery: box", 19 * 8 * comparisons(6)),
+    ("battery: furnace", 19 * 8 * comparisons(6)),
+    ("battery: sphere", 19 * comparisons(8)),
     ("form factors of the sphere by local lines", 8),
     ("uniform points of a sphere's element", 1),
     ("form factors of rectangles by local lines", 3),
@@ -22,6 +26,7 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("form factors of the sphere by global lines", 1),
     ("directions of global lines at an element", 2),
     ("form factor matrix by local lines", 4),
+    ("form factor matrix by global lines", 3),
     ("projections of a fair coin", 12),
     ("furnace: box", 2 * comparisons(6)),
     ("furnace: cubes", 2 * comparisons(9)),

@@ -5,8 +5,8 @@ use crate::projections::{Deviation, projections};
 use crate::statistics::p_of_t;
 use isolux_core::math::Rgb;
 use isolux_core::run::run;
-use isolux_core::solvers::StochasticJacobi;
-use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_core::solvers::MonteCarlo;
+use isolux_core::solvers::monte_carlo::{Budget, Settings};
 use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
 use rayon::prelude::*;
@@ -28,7 +28,7 @@ pub fn solve(problem: &Problem, settings: Settings) -> Solution {
 /// # Panics
 /// If the settings are refused.
 pub fn solve_until(problem: &Problem, settings: Settings, rays: u64) -> Solution {
-    let mut solver = StochasticJacobi::new(problem, settings).expect("the settings of a test are allowed");
+    let mut solver = MonteCarlo::new(problem, settings).expect("the settings of a test are allowed");
     let enough = |done| if done >= rays { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     run(&mut solver, problem, |progress| enough(progress.rays))
 }

@@ -2,6 +2,7 @@
 //!
 //! A sampled result is judged by its own error bar, never by a tolerance chosen by eye.
 
+pub mod battery;
 pub mod budget;
 pub mod contour;
 pub mod ensemble;

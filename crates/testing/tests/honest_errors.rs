@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use isolux_core::math::hash::derive;
-use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
-use isolux_core::solvers::{Solver, StochasticJacobi};
+use isolux_core::solvers::monte_carlo::{Budget, Settings};
+use isolux_core::solvers::{MonteCarlo, Solver};
 use isolux_core::{Problem, Solution};
 use isolux_testing::budget::{assert_t_of, refutes};
 use isolux_testing::ensemble::{Exact, ensemble, solve_until, with_rays};
@@ -70,7 +70,7 @@ fn replicates_that_share_their_seed_are_seen() {
 }
 
 fn solve_in_pairs(problem: &Problem, seed: u64) -> Solution {
-    let mut solver = StochasticJacobi::new(problem, Settings { seed, ..with_rays(20_000) }).unwrap();
+    let mut solver = MonteCarlo::new(problem, Settings { seed, ..with_rays(20_000) }).unwrap();
     while let Some(pieces) = solver.step() {
         for piece in pieces {
             let part = solver.part(problem, piece);
@@ -78,7 +78,7 @@ fn solve_in_pairs(problem: &Problem, seed: u64) -> Solution {
         }
         let mut state = serde_json::to_value(&solver).unwrap();
         let replicate = state["replicate"].as_u64().unwrap();
-        state["relaxation"]["seed"] = derive(seed, replicate & !1).into();
+        state["complete"]["Relaxation"]["seed"] = derive(seed, replicate & !1).into();
         solver = serde_json::from_value(state).unwrap();
     }
     solver.solution(problem)

@@ -4,7 +4,7 @@ use glam::Vec3;
 use isolux_core::math::Rgb;
 use isolux_core::scene::Material;
 use isolux_core::scene::builtin::shapes::Builder;
-use isolux_core::solvers::stochastic_jacobi::Settings;
+use isolux_core::solvers::monte_carlo::Settings;
 use isolux_core::transport::Leaving;
 use isolux_testing::ensemble::{solve, with_rays};
 use isolux_testing::scenes::cut;

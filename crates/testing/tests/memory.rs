@@ -2,7 +2,7 @@
 //!
 //! The one test of this file, for its allocator counts for the whole process.
 
-use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_core::solvers::monte_carlo::{Budget, Settings};
 use isolux_testing::ensemble::{solve, solve_until, with_rays};
 use isolux_testing::scenes::{cut, scene};
 use peak_alloc::PeakAlloc;

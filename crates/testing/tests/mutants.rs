@@ -3,7 +3,8 @@
 use isolux_core::Problem;
 use isolux_core::math::Rgb;
 use isolux_core::sampling::address::Address;
-use isolux_core::solvers::stochastic_jacobi::Settings;
+use isolux_core::solvers::monte_carlo::method::STOCHASTIC_JACOBI;
+use isolux_core::solvers::monte_carlo::{Method, Settings};
 use isolux_testing::contour::convex_room_answer;
 use isolux_testing::ensemble::{
     Exact, assert_exact, constant_elements, ensemble, irradiances, radiosities, refutes_exact, with_rays,
@@ -90,7 +91,13 @@ fn furnace_sees_the_bias_of_per_element_counters() {
     faces.for_each(|(m, rho)| m.reflectivity = Rgb::grey(rho));
     let problem = cut(furnace(room), 1200);
     let exact = furnace_answer(&problem);
-    let runs = |address| irradiances(&ensemble(&problem, Settings { address, ..constant_elements(40_000) }, 200));
+    let runs = |address| {
+        irradiances(&ensemble(
+            &problem,
+            Settings { method: Method { address, ..STOCHASTIC_JACOBI }, ..constant_elements(40_000) },
+            200,
+        ))
+    };
     assert_exact("furnace: cube with few lines", &problem, &runs(Address::PerIteration), &exact);
     assert!(refutes_exact(&problem, &runs(Address::PerElement), &exact));
 }

@@ -6,8 +6,8 @@ use isolux_core::Problem;
 use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
 use isolux_core::scene::Scene;
-use isolux_core::solvers::StochasticJacobi;
-use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_core::solvers::MonteCarlo;
+use isolux_core::solvers::monte_carlo::{Budget, Settings};
 use isolux_core::view::VertexField;
 use isolux_io::import::{ImportOptions, read_scene};
 use isolux_testing::reference::{self, CHANNELS, Comparison, Ratio, Value};
@@ -21,7 +21,7 @@ fn ratios(folder: &Path, scene: Scene) -> Vec<(String, Ratio)> {
     let mut comparison = Comparison::new(reference.good, &problem).unwrap();
     for seed in 1..=4 {
         let settings = Settings { seed, budget: Budget::Rays(2_000_000), replicates: 8, ..Settings::default() };
-        let mut solver = StochasticJacobi::new(&problem, settings).unwrap();
+        let mut solver = MonteCarlo::new(&problem, settings).unwrap();
         let solution = run(&mut solver, &problem, |_| ControlFlow::Continue(()));
         comparison.push(&problem, &solution, &VertexField::new(&problem, &solution));
     }

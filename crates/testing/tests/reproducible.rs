@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use isolux_core::run::run;
-use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
-use isolux_core::solvers::{Solver, StochasticJacobi};
+use isolux_core::solvers::monte_carlo::{Budget, Settings};
+use isolux_core::solvers::{MonteCarlo, Solver};
 use isolux_core::{Problem, Solution};
 use isolux_testing::ensemble::{solve, with_rays};
 use isolux_testing::scenes::problem;
@@ -49,7 +49,7 @@ fn another_seed_gives_another_solution() {
 #[test]
 fn an_interrupted_run_continues_with_the_same_bits() {
     let problem = problem("cornell-box", 2000);
-    let mut solver = StochasticJacobi::new(&problem, in_pieces()).unwrap();
+    let mut solver = MonteCarlo::new(&problem, in_pieces()).unwrap();
     let mut most_pieces = 0;
     while let Some(pieces) = solver.step() {
         most_pieces = most_pieces.max(pieces.end);
@@ -68,12 +68,12 @@ fn an_interrupted_run_continues_with_the_same_bits() {
 fn an_endless_run_can_be_taken_up_again() {
     let problem = problem("cornell-box", 500);
     let settings = Settings { budget: Budget::Endless, ..Settings::default() };
-    let until = |solver: &mut StochasticJacobi, rays: u64| {
+    let until = |solver: &mut MonteCarlo, rays: u64| {
         run(solver, &problem, |p| if p.rays >= rays { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     };
-    let mut stopped = StochasticJacobi::new(&problem, settings).unwrap();
+    let mut stopped = MonteCarlo::new(&problem, settings).unwrap();
     until(&mut stopped, 30_000);
-    let mut resumed: StochasticJacobi = postcard::from_bytes(&postcard::to_stdvec(&stopped).unwrap()).unwrap();
-    let mut whole = StochasticJacobi::new(&problem, settings).unwrap();
+    let mut resumed: MonteCarlo = postcard::from_bytes(&postcard::to_stdvec(&stopped).unwrap()).unwrap();
+    let mut whole = MonteCarlo::new(&problem, settings).unwrap();
     assert!(bits(&until(&mut resumed, 90_000)) == bits(&until(&mut whole, 90_000)));
 }

@@ -1,6 +1,6 @@
 //! Which points of which stream a line draws: an axis of its own, for it decides bias and convergence.
 //!
-//! In both addresses every source owns a stream and a counter, so its lines are well distributed whatever the order in which an
+//! In the first two every source owns a stream and a counter, so its lines are well distributed whatever the order in which an
 //! algorithm shoots.
 //!
 //! - *Per element* (Bekaert, Cools & Willems 1999): the counter runs on from iteration to iteration. The k-th line
@@ -8,6 +8,8 @@
 //!   the earlier ones, while the power they carry depends on where the earlier ones went.
 //! - *Per iteration*: the stream is scrambled anew at the start of each iteration and the counter starts at zero. Points
 //!   are independent of the power they carry, so the estimate is unbiased.
+//! - *Per particle*: the k-th line of a random walk uses the numbers 5k to 5k + 4 of the point of its particle, so a path needs as
+//!   many dimensions as it is long. Unbiased, but the lines that leave an element are hardly better distributed than chance.
 
 use crate::math::hash::derive;
 
@@ -17,21 +19,23 @@ pub enum Address {
     PerElement,
     #[default]
     PerIteration,
+    PerParticle,
 }
 
-/// The counters of all streams: 4 bytes a source for [`Address::PerElement`], none for [`Address::PerIteration`].
+/// The counters of all streams: 4 bytes a source for [`Address::PerElement`], none for the others.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Counters {
     drawn: Vec<u32>,
 }
 
 impl Address {
-    pub const ALL: [Address; 2] = [Address::PerIteration, Address::PerElement];
+    pub const ALL: [Address; 3] = [Address::PerIteration, Address::PerElement, Address::PerParticle];
 
     pub fn name(self) -> &'static str {
         match self {
             Address::PerElement => "per-element",
             Address::PerIteration => "per-iteration",
+            Address::PerParticle => "per-particle",
         }
     }
 

@@ -35,6 +35,9 @@ pub const SEQUENCES: &[Entry] = &[
 pub struct SequenceName(&'static Entry);
 
 impl SequenceName {
+    pub const OWEN_SOBOL: SequenceName = SequenceName(&owen_sobol::ENTRY);
+    pub const HALTON: SequenceName = SequenceName(&halton::ENTRY);
+
     /// All choices, in the order of the table.
     pub fn all() -> impl Iterator<Item = SequenceName> {
         SEQUENCES.iter().map(SequenceName)

@@ -6,6 +6,7 @@
 pub mod builtin;
 mod camera;
 pub mod check;
+mod colors;
 mod image;
 mod light;
 mod material;

@@ -41,6 +41,17 @@ impl Allocation {
         allocation
     }
 
+    /// As many rays for every source as `counts` say.
+    pub fn of_counts(counts: impl Iterator<Item = (u32, u32)>) -> Allocation {
+        let mut allocation = Allocation::default();
+        for (source, count) in counts {
+            let first = allocation.rays;
+            allocation.rays += u64::from(count);
+            allocation.push(source, first, allocation.rays);
+        }
+        allocation
+    }
+
     fn push(&mut self, source: u32, first: u64, until: u64) {
         if until > first {
             self.sources.push(source);

@@ -4,14 +4,15 @@ mod allocation;
 pub mod budget;
 pub mod deterministic;
 mod gathering;
+mod line_set;
+pub mod monte_carlo;
 mod replicates;
 mod shooting;
-pub mod stochastic_jacobi;
 
-pub use stochastic_jacobi::StochasticJacobi;
+pub use monte_carlo::MonteCarlo;
 
 use crate::form_factors::Row;
-use crate::transport::Spot;
+use crate::transport::{Span, Spot};
 use crate::{Problem, Solution};
 use std::ops::Range;
 
@@ -43,6 +44,12 @@ pub trait Solver: Send + Sync {
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Part {
     pub landings: Vec<Landing>,
+    /// Particles that go on from an element in the next step.
+    pub survivors: Vec<Particle>,
+    /// Where global lines join surfaces, for solvers that send light along them one after the other.
+    pub spans: Vec<Span>,
+    /// Flux [lm, luminance] that surfaces absorbed, of particles.
+    pub absorbed: f64,
     /// Flux [lm, luminance] that hit nothing.
     pub escaped: f64,
     /// Flux [lm, luminance] that hit the back of a one-sided surface.
@@ -59,6 +66,21 @@ pub struct Landing {
     /// Where on the element a line ended; of no meaning when gathering.
     pub spot: Spot,
     /// Its meaning is the solver's: a flux [lm] when shooting, a sum of radiosities [lm/m²] when gathering.
+    pub light: [f32; 3],
+}
+
+/// A particle that leaves an element.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Particle {
+    /// The source it leaves: an element, or after these a light without extent.
+    pub source: u32,
+    /// The element for which it gathers; of no meaning when shooting.
+    pub home: u32,
+    /// Number of the point of the source's stream that its line takes.
+    pub index: u32,
+    /// Reflections behind it.
+    pub depth: u32,
+    /// Flux [lm] that it carries, or its weight when gathering.
     pub light: [f32; 3],
 }
 

@@ -43,14 +43,23 @@ impl Sweep<'_> {
     ///
     /// Sources from the number of elements on are the scene's lights without extent.
     pub fn shoot(&self, piece: u64, source: impl Fn(u32) -> (Rgb, Footprint)) -> Part {
+        let luminance = self.total / self.allocation.rays() as f64;
+        self.shoot_each(piece, |share| {
+            let (flux, footprint) = source(share.source);
+            (flux * (luminance / flux.luminance_f64()) as f32, footprint)
+        })
+    }
+
+    /// As [`Sweep::shoot`]; `ray(share)` is the flux [lm] of each ray of a source's share, whose luminance is the same for all
+    /// rays.
+    pub fn shoot_each(&self, piece: u64, ray: impl Fn(Share) -> (Rgb, Footprint)) -> Part {
         let range = ray_range(piece, self.allocation.rays());
         let luminance = self.total / self.allocation.rays() as f64;
         let mut part = Part { rays: range.end - range.start, ..Part::default() };
         part.landings.reserve(part.rays as usize);
         let mut batch = Batch::default();
         for share in self.allocation.shares(range) {
-            let (source_flux, footprint) = source(share.source);
-            let color = source_flux * (luminance / source_flux.luminance_f64()) as f32;
+            let (color, footprint) = ray(share);
             self.depart(share, footprint, |ray| {
                 batch.push(ray, color);
                 if batch.rays.len() == BATCH {

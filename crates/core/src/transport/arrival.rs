@@ -6,7 +6,7 @@ use crate::geometry::{Hit, Ray};
 use glam::Vec2;
 
 /// What lies at the end of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Arrival {
     /// An element, and where on it.
     Element { element: u32, spot: Spot },

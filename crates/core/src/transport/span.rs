@@ -15,7 +15,7 @@ use crate::Problem;
 use crate::geometry::Hit;
 
 /// Two ends that see each other, at least one of them an element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Span {
     /// Whence the line comes.
     pub from: Arrival,

@@ -13,8 +13,8 @@ use isolux_core::Problem;
 use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
 use isolux_core::solution::luminance_error;
-use isolux_core::solvers::StochasticJacobi;
-use isolux_core::solvers::stochastic_jacobi::{Budget, Settings};
+use isolux_core::solvers::MonteCarlo;
+use isolux_core::solvers::monte_carlo::{Budget, Settings};
 use isolux_core::view::VertexField;
 use isolux_io::files::OutputFile;
 use isolux_io::import::{ImportOptions, read_scene};
@@ -90,7 +90,7 @@ fn compare(scenes: &Path, room: &'static str, more: u64, rays: u64) -> Result<Tr
     let (mut rays_in_all, mut back_face) = (0, 0.0);
     for seed in SEEDS {
         let settings = Settings { seed, budget: Budget::Rays(rays), replicates: REPLICATES, ..Settings::default() };
-        let mut solver = StochasticJacobi::new(&problem, settings)?;
+        let mut solver = MonteCarlo::new(&problem, settings)?;
         let solution = run(&mut solver, &problem, |_| ControlFlow::Continue(()));
         rays_in_all += solution.work.rays;
         back_face += solution.balance.back_face / solution.balance.emitted / SEEDS.count() as f64;

@@ -198,6 +198,39 @@ impl Light {
         total.reflected += reflected.luminance_f64();
     }
 
+    /// Multiplies all light by `factor`.
+    pub fn scale(&mut self, factor: f32) {
+        for flux in [&mut self.lamps, &mut self.direct, &mut self.indirect, &mut self.unshot] {
+            flux.iter_mut().for_each(|flux| *flux = *flux * factor);
+        }
+    }
+
+    /// Takes the flux [lm] that waits on element `e`.
+    pub fn take_unshot(&mut self, e: u32) -> Rgb {
+        std::mem::take(&mut self.unshot[e as usize])
+    }
+
+    /// Light [lm] lands on element `e`, and what it reflects waits there.
+    pub fn land_and_wait(&mut self, mesh: &ElementMesh, e: u32, light: Rgb) -> Landed {
+        let reflected = mesh.reflectivity(e) * light;
+        self.indirect[e as usize] += light;
+        self.unshot[e as usize] += reflected;
+        Landed { absorbed: (light.luminance_f64() - reflected.luminance_f64()), reflected: reflected.luminance_f64() }
+    }
+
+    /// Finds the elements that have unshot flux.
+    pub fn find_active(&mut self) {
+        self.active = (0..self.unshot.len() as u32).filter(|&e| !self.unshot[e as usize].is_black()).collect();
+    }
+
+    /// Merges `gathered` light [lm] on element `e` into what was shot, with these weights of direct and indirect light.
+    pub fn merge(&mut self, e: u32, gathered: Rgb, [direct, indirect]: [f32; 2]) {
+        let k = e as usize;
+        let shot = self.direct[k] * (1.0 - direct) + self.indirect[k] * (1.0 - indirect);
+        self.direct[k] = Rgb::BLACK;
+        self.indirect[k] = shot + gathered;
+    }
+
     /// Ends a regular iteration: what has landed is another estimate of all reflected light, averaged in with weight `share`.
     pub fn average_in(&mut self, share: f32) {
         self.touched = None;

@@ -9,10 +9,10 @@
 //! element's own noise would pull its estimate towards low values. Direct and indirect light are merged separately,
 //! for few lines meet an emitter and all meet a wall.
 
-use super::light::Light;
 use crate::Problem;
 use crate::math::Rgb;
 use crate::solvers::allocation::Allocation;
+use crate::solvers::monte_carlo::light::Light;
 use crate::transport::Footprint;
 
 /// The two variances of one kind of light, but for area and rays of the element: `V_s = shooting / A`, `V_g = gathering / n`.

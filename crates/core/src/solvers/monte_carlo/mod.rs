@@ -1,34 +1,36 @@
-//! Stochastic Jacobi radiosity (Neumann et al. 1995; Bekaert 1999; Dutré, Bekaert & Bala 2006, chapter 6).
+//! Monte Carlo radiosity, by any method of the survey (see [`method`]).
 //!
-//! One *complete solution* (see [`relaxation`]) shoots the emitted light, relaxes the reflected light by incremental
-//! shooting until nothing is left to shoot, improves it by a regular shooting iteration, and cleans small elements by
-//! gathering. The estimate is the mean of independently randomised complete solutions, and their spread gives every
-//! element its standard error.
-//!
-//! Unbiased but for the unshot power that each complete solution leaves: at most 10^-6 of the emitted, unless hardly anything
-//! is absorbed (see [`plan`]); the balance reports it. What is estimated with [`Leaving::WholeElement`] is the solution with constant
-//! elements, with [`Leaving::WhereLanded`] one that leaks less. The error bars do not contain what elements of finite size cost.
-//! Cost: one ray a sample; time per complete solution grows like n log n with n elements.
+//! The estimate is the mean of independently randomised *complete solutions* (see [`complete`]), and their spread gives every
+//! element its standard error. Which of them are biased, and by how much, is said where they are: [`relaxation`], [`wdrs`],
+//! [`walks`]. What is estimated is the solution with constant elements if light leaves them from
+//! anywhere, a less leaky one if it leaves from where it landed, and the radiosity equation itself for continuous walks. The
+//! error bars do not contain what elements of finite size cost. Cost: one ray a sample.
 
+pub mod axes;
+mod complete;
+mod experience;
 mod light;
-mod merging;
-mod plan;
+mod meaning;
+pub mod method;
 mod relaxation;
+mod settings;
+mod sources;
+mod walks;
+mod wdrs;
 
-use self::plan::Experience;
-use self::relaxation::{Relaxation, Stage};
+pub use method::{METHODS, Method, NamedMethod};
+pub use settings::{Budget, Settings};
+
+use self::complete::Complete;
+use self::experience::Experience;
 use super::replicates::Replicates;
 use super::{Part, Progress, Solver, budget};
 use crate::math::Rgb;
 use crate::math::hash::derive;
-use crate::sampling::address::Address;
 use crate::solution::{Balance, Provenance, Solution, Work, relative_error};
 use crate::transport::Leaving;
 use crate::{Error, Problem};
 use std::ops::Range;
-
-/// The name of the method in tables and provenance.
-pub const NAME: &str = "stochastic-jacobi";
 
 /// Rays of a step are numbered in 32 bits.
 const MOST_RAYS_EACH: u64 = u32::MAX as u64;
@@ -36,42 +38,9 @@ const MOST_RAYS_EACH: u64 = u32::MAX as u64;
 /// nine points at most (see [`crate::transport::footprint`]).
 const RAYS_PER_ELEMENT: u64 = 1000;
 
-/// How much work, and which random numbers.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Settings {
-    pub seed: u64,
-    pub budget: Budget,
-    /// Independent complete solutions in a round, from 8; there are more if there are very many rays for each element.
-    pub replicates: u32,
-    pub address: Address,
-    pub leaving: Leaving,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Budget {
-    /// The number of rays that [`budget::rays`] recommends.
-    Heuristic,
-    /// This many rays, give or take the rays of one iteration.
-    Rays(u64),
-    /// Until the driver stops: rounds of replicates, each round with twice the rays of the one before.
-    Endless,
-}
-
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings {
-            seed: 1,
-            budget: Budget::Heuristic,
-            replicates: 16,
-            address: Address::default(),
-            leaving: Leaving::default(),
-        }
-    }
-}
-
 /// The solver's state: a checkpoint, as it is.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub struct StochasticJacobi {
+pub struct MonteCarlo {
     settings: Settings,
     /// Independent complete solutions in a round.
     replicates_in_round: u32,
@@ -82,7 +51,7 @@ pub struct StochasticJacobi {
     replicates: Replicates,
     /// Number of the running replicate.
     replicate: u32,
-    relaxation: Relaxation,
+    complete: Complete,
     experience: Experience,
     /// Sum of the balances of the finished replicates [lm].
     balance: Balance,
@@ -90,10 +59,12 @@ pub struct StochasticJacobi {
     rms_error: Option<f64>,
 }
 
-impl StochasticJacobi {
+impl MonteCarlo {
     /// # Errors
-    /// [`Error::Parameter`] for fewer than 8 replicates or fewer rays than those.
-    pub fn new(problem: &Problem, settings: Settings) -> Result<StochasticJacobi, Error> {
+    /// [`Error::Meaningless`] for a method that has no meaning, here or at all; [`Error::Parameter`] for fewer than 8 replicates or fewer rays than those.
+    pub fn new(problem: &Problem, settings: Settings) -> Result<MonteCarlo, Error> {
+        settings.method.check()?;
+        settings.method.check_scene(&problem.scene)?;
         let parameter = |name, value: u64, allowed| Err(Error::Parameter { name, value: value.to_string(), allowed });
         if settings.replicates < 8 {
             return parameter("replicates", settings.replicates.into(), "at least 8 are needed for an error bar");
@@ -109,26 +80,21 @@ impl StochasticJacobi {
         // A first round of a few rays for each element: a first answer soon, with its error bar.
         let rays_in_round =
             rays_in_all.unwrap_or((4 * problem.mesh.len() as u64).max(1000 * u64::from(settings.replicates)));
-        let most_each = most_rays_each(problem, settings.leaving);
+        let most_each = most_rays_each(problem, &settings);
         let replicates_in_round =
             rays_in_round.div_ceil(most_each).clamp(settings.replicates.into(), u32::MAX.into()) as u32;
         let rays_each = rays_in_round.div_ceil(replicates_in_round.into());
         let experience = Experience::expected(problem);
-        let relaxation = Relaxation::new(
-            problem,
-            (settings.address, settings.leaving),
-            derive(settings.seed, 0),
-            rays_each,
-            &experience,
-        );
-        Ok(StochasticJacobi {
+        let mut complete = Complete::new(problem, &settings);
+        complete.as_mut().restart(problem, derive(settings.seed, 0), rays_each, &experience);
+        Ok(MonteCarlo {
             settings,
             replicates_in_round,
             rays_each,
             rays_in_all,
             replicates: Replicates::new(problem.mesh.len()),
             replicate: 0,
-            relaxation,
+            complete,
             experience,
             balance: Balance::default(),
             rays: 0,
@@ -143,14 +109,15 @@ impl StochasticJacobi {
     }
 
     fn is_dark(&self) -> bool {
-        self.relaxation.balance().emitted <= 0.0
+        self.complete.as_ref().balance().emitted <= 0.0
     }
 
     /// Takes a finished complete solution into the estimate and starts the next one.
     fn next_replicate(&mut self, problem: &Problem) {
-        self.replicates.push(self.relaxation.rays(), self.relaxation.irradiance(problem));
-        self.experience = self.relaxation.experience();
-        self.balance = self.balance + self.relaxation.balance();
+        let complete = self.complete.as_ref();
+        self.replicates.push(complete.rays(), problem.mesh.elements().map(|e| complete.irradiance(problem, e)));
+        self.experience = complete.experience();
+        self.balance = self.balance + self.complete.as_ref().balance();
         self.replicate += 1;
         if self.replicates.count_in_round() >= 2 {
             self.rms_error = Some(relative_error(problem, |e| {
@@ -163,10 +130,10 @@ impl StochasticJacobi {
         }
         if self.settings.budget == Budget::Endless && self.replicates.count_in_round() == self.replicates_in_round {
             self.replicates.close_round();
-            self.rays_each = (2 * self.rays_each).min(most_rays_each(problem, self.settings.leaving));
+            self.rays_each = (2 * self.rays_each).min(most_rays_each(problem, &self.settings));
         }
         let seed = derive(self.settings.seed, u64::from(self.replicate));
-        self.relaxation.restart(problem, seed, self.rays_each, &self.experience);
+        self.complete.as_mut().restart(problem, seed, self.rays_each, &self.experience);
     }
 
     fn provenance(&self, problem: &Problem) -> Provenance {
@@ -175,36 +142,36 @@ impl StochasticJacobi {
             Budget::Rays(rays) => ("rays", rays.to_string()),
             Budget::Endless => ("rounds", "doubling".to_owned()),
         };
+        let mut parameters = vec![
+            (name.to_owned(), value),
+            ("replicates".to_owned(), self.replicates_in_round.to_string()),
+            ("leaving".to_owned(), self.settings.leaving.name().to_owned()),
+        ];
+        parameters.extend(self.settings.method.parameters());
         Provenance {
             scene: problem.scene.name.clone(),
             scene_hash: problem.scene.hash(),
-            method: NAME.to_owned(),
-            parameters: vec![
-                (name.to_owned(), value),
-                ("replicates".to_owned(), self.replicates_in_round.to_string()),
-                ("sequence".to_owned(), "owen-sobol".to_owned()),
-                ("address".to_owned(), self.settings.address.name().to_owned()),
-                ("leaving".to_owned(), self.settings.leaving.name().to_owned()),
-            ],
+            method: self.settings.method.name().to_owned(),
+            parameters,
             seed: self.settings.seed,
             version: crate::VERSION.to_owned(),
         }
     }
 }
 
-impl Solver for StochasticJacobi {
+impl Solver for MonteCarlo {
     fn step(&self) -> Option<Range<u64>> {
-        (!self.is_finished()).then(|| self.relaxation.pieces())
+        if self.is_finished() { None } else { self.complete.as_ref().pieces() }
     }
 
     fn part(&self, problem: &Problem, piece: u64) -> Part {
-        self.relaxation.part(problem, piece)
+        self.complete.as_ref().part(problem, piece)
     }
 
     fn absorb(&mut self, problem: &Problem, part: Part) {
         self.rays += part.rays;
-        self.relaxation.absorb(problem, part, &self.experience);
-        if self.relaxation.stage() == Stage::Done {
+        self.complete.as_mut().absorb(problem, part, &self.experience);
+        if self.complete.as_ref().pieces().is_none() {
             self.next_replicate(problem);
         }
     }
@@ -212,13 +179,14 @@ impl Solver for StochasticJacobi {
     fn solution(&self, problem: &Problem) -> Solution {
         let unfinished = self.replicates.count() == 0;
         let mean =
-            |e| if unfinished { self.relaxation.irradiance_so_far(problem, e) } else { self.replicates.estimate(e).0 };
+            |e| if unfinished { self.complete.as_ref().irradiance(problem, e) } else { self.replicates.estimate(e).0 };
         let std_error = |e| match unfinished {
             _ if self.is_dark() => Rgb::BLACK,
             true => Rgb::grey(f32::NAN),
             false => self.replicates.estimate(e).1.map(f32::sqrt),
         };
-        let balance = if unfinished { self.relaxation.balance() } else { self.balance / f64::from(self.replicate) };
+        let balance =
+            if unfinished { self.complete.as_ref().balance() } else { self.balance / f64::from(self.replicate) };
         Solution {
             irradiance: problem.mesh.elements().map(mean).collect(),
             std_error: problem.mesh.elements().map(std_error).collect(),
@@ -230,20 +198,24 @@ impl Solver for StochasticJacobi {
 
     fn progress(&self) -> Progress {
         Progress {
-            stage: self.relaxation.stage().name(),
+            stage: self.complete.as_ref().stage(),
             rays: self.rays,
             rays_in_all: self.rays_in_all,
-            unshot: self.relaxation.unshot_share(),
+            unshot: {
+                let Balance { unshot, emitted, .. } = self.complete.as_ref().balance();
+                unshot / emitted.max(f64::MIN_POSITIVE)
+            },
             rms_error: self.rms_error,
         }
     }
 }
 
 /// Most rays of a complete solution.
-fn most_rays_each(problem: &Problem, leaving: Leaving) -> u64 {
-    match leaving {
-        Leaving::WhereLanded => (RAYS_PER_ELEMENT * problem.mesh.len() as u64).clamp(1000, MOST_RAYS_EACH),
-        Leaving::WholeElement => MOST_RAYS_EACH,
+fn most_rays_each(problem: &Problem, settings: &Settings) -> u64 {
+    if settings.method.pools() && settings.leaving == Leaving::WhereLanded {
+        (RAYS_PER_ELEMENT * problem.mesh.len() as u64).clamp(1000, MOST_RAYS_EACH)
+    } else {
+        MOST_RAYS_EACH
     }
 }
 

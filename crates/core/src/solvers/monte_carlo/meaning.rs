@@ -1,0 +1,141 @@
+//! Which combinations of the axes have a meaning.
+
+use super::Method;
+use super::axes::{Direction, Estimator, Lines, Order, Survival, Walk};
+use crate::Error;
+use crate::sampling::address::Address;
+use crate::scene::Scene;
+
+impl Method {
+    /// Refuses what has no meaning.
+    ///
+    /// # Errors
+    /// [`Error::Meaningless`] says why, and what is nearest.
+    pub fn check(&self) -> Result<(), Error> {
+        let refuse = |what, nearest| Err(Error::Meaningless { what, nearest });
+        let (local, depth_first) = (self.lines == Lines::Local, self.order == Order::DepthFirst);
+        if self.walk == Walk::Continuous && !local {
+            return refuse(
+                "a global line is chosen without regard to where light has landed, so light cannot go on from there",
+                "--walk discrete",
+            );
+        }
+        if self.walk == Walk::Continuous && !depth_first {
+            return refuse(
+                "light of many lines is pooled on an element, so it has no point from which to go on",
+                "--order depth-first, or --leaving where-landed",
+            );
+        }
+        if self.order == Order::Wdrs && !local {
+            return refuse(
+                "an element cannot be given the rays that it lacks, for global lines cannot be aimed",
+                "--order stochastic-jacobi",
+            );
+        }
+        if depth_first && self.lines == Lines::Bundle {
+            return refuse(
+                "the lines of a bundle have no order in which light could go from one to the next",
+                "--order breadth-first, or --lines global",
+            );
+        }
+        if self.direction == Direction::Gathering && self.pools() {
+            return refuse("only a random walk along local lines has a direction", "--order depth-first --lines local");
+        }
+        if self.estimator != Estimator::Collision && self.pools() {
+            return refuse("only a random walk along local lines has estimators", "--order depth-first --lines local");
+        }
+        self.check_survival()?;
+        self.check_address()
+    }
+
+    fn check_survival(&self) -> Result<(), Error> {
+        let refuse = |what, nearest| Err(Error::Meaningless { what, nearest });
+        if self.survival == Survival::Fraction {
+            if self.pools() || self.direction == Direction::Gathering {
+                return refuse("only particles that shoot can go on in a fraction", "--method keller");
+            }
+            if self.address != Address::PerParticle {
+                return refuse(
+                    "the first fraction of the particles goes on, so a path belongs to its particle",
+                    "--address per-particle",
+                );
+            }
+            if self.estimator != Estimator::Collision {
+                return refuse(
+                    "without a random end there is nothing to survive or to be absorbed by",
+                    "--estimator collision",
+                );
+            }
+        }
+        Ok(())
+    }
+
+    fn check_address(&self) -> Result<(), Error> {
+        let refuse = |what, nearest| Err(Error::Meaningless { what, nearest });
+        match self.address {
+            Address::PerParticle if self.pools() => refuse(
+                "rays of pooled light belong to elements or iterations, not to particles",
+                "--address per-iteration",
+            ),
+            Address::PerIteration if !self.pools() => {
+                refuse("a random walk has no iterations", "--address per-particle, or per-element if it is discrete")
+            }
+            Address::PerElement if self.lines != Lines::Local => {
+                refuse("a global line belongs to no element", "--address per-iteration")
+            }
+            Address::PerElement if self.walk == Walk::Continuous => {
+                refuse("a continuous walk goes on from points, which own no sequence", "--address per-particle")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses what has no meaning in `scene`.
+    ///
+    /// # Errors
+    /// [`Error::Meaningless`].
+    pub fn check_scene(&self, scene: &Scene) -> Result<(), Error> {
+        if self.direction == Direction::Gathering && !scene.lights.is_empty() {
+            let what = "no line that is gathered meets a light without extent";
+            return Err(Error::Meaningless { what, nearest: "--direction shooting" });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solvers::monte_carlo::METHODS;
+    use crate::solvers::monte_carlo::axes::Axis;
+    use crate::solvers::monte_carlo::method::STOCHASTIC_JACOBI;
+
+    #[test]
+    fn every_named_method_has_a_meaning_and_its_natural_address() {
+        for named in METHODS {
+            assert_eq!(named.method.check(), Ok(()), "{}", named.name);
+            assert_eq!(named.method.address, named.method.natural_address(), "{}", named.name);
+            assert_eq!(named.method.name(), named.name);
+        }
+    }
+
+    #[test]
+    fn what_is_refused_says_why_and_what_is_nearest() {
+        let mut refused = 0;
+        for &walk in Walk::ALL {
+            for &lines in Lines::ALL {
+                for &order in Order::ALL {
+                    let method = Method { walk, lines, order, ..STOCHASTIC_JACOBI };
+                    let method = Method { address: method.natural_address(), ..method };
+                    if let Err(error) = method.check() {
+                        let text = error.to_string();
+                        assert!(text.contains("has no meaning") && text.contains("nearest is --"), "{text}");
+                        refused += 1;
+                    }
+                }
+            }
+        }
+        // A continuous walk has one order and local lines; WDRS no global lines, a depth-first walk no bundles.
+        assert_eq!(refused, 17 + 2 + 1);
+    }
+}

@@ -1,0 +1,194 @@
+//! A method: a point in the space of the axes. Those that the literature names are in a table.
+
+use super::axes::{Axis, Direction, Estimator, FirstShot, Lines, Order, Survival, Walk};
+use crate::Error;
+use crate::sampling::SequenceName;
+use crate::sampling::address::Address;
+
+/// A choice on every axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Method {
+    pub walk: Walk,
+    pub lines: Lines,
+    pub order: Order,
+    pub sequence: SequenceName,
+    pub address: Address,
+    pub estimator: Estimator,
+    pub direction: Direction,
+    pub survival: Survival,
+    pub first_shot: FirstShot,
+}
+
+/// A method of the literature.
+#[derive(Clone, Copy, Debug)]
+pub struct NamedMethod {
+    pub name: &'static str,
+    /// Two lines for people.
+    pub what: [&'static str; 2],
+    pub source: &'static str,
+    pub method: Method,
+}
+
+/// Stochastic Jacobi radiosity, from which the others differ.
+pub const STOCHASTIC_JACOBI: Method = Method {
+    walk: Walk::Discrete,
+    lines: Lines::Local,
+    order: Order::StochasticJacobi,
+    sequence: SequenceName::OWEN_SOBOL,
+    address: Address::PerIteration,
+    estimator: Estimator::Collision,
+    direction: Direction::Shooting,
+    survival: Survival::Random,
+    first_shot: FirstShot::Local,
+};
+
+const fn of_order(order: Order) -> Method {
+    Method { order, ..STOCHASTIC_JACOBI }
+}
+
+const RANDOM_WALK: Method = Method { order: Order::DepthFirst, address: Address::PerElement, ..STOCHASTIC_JACOBI };
+const PARTICLES: Method = Method { walk: Walk::Continuous, address: Address::PerParticle, ..RANDOM_WALK };
+
+/// All methods with a name. The first is the default.
+pub const METHODS: &[NamedMethod] = &[
+    NamedMethod {
+        name: "stochastic-jacobi",
+        what: [
+            "shoots light until none is left, shoots the whole once more, and gathers",
+            "on small elements; the way to all-round good results",
+        ],
+        source: "Neumann et al. 1995; Bekaert 1999",
+        method: STOCHASTIC_JACOBI,
+    },
+    NamedMethod {
+        name: "stochastic-ray",
+        what: ["shoots the whole power in each iteration and averages the iterations", "after a warm-up"],
+        source: "Neumann et al. 1995",
+        method: of_order(Order::StochasticRay),
+    },
+    NamedMethod {
+        name: "shirley",
+        what: ["one breadth-first sweep: all landed light is shot in the next step,", "until none is left"],
+        source: "Shirley 1991",
+        method: of_order(Order::BreadthFirst),
+    },
+    NamedMethod {
+        name: "feda",
+        what: ["Shirley's sweep in stages of growing numbers of rays, each of them", "a whole solution, averaged"],
+        source: "Feda & Purgathofer 1993",
+        method: of_order(Order::Staged),
+    },
+    NamedMethod {
+        name: "wdrs",
+        what: [
+            "well distributed ray sets: every element shoots the rays of equal power",
+            "that it lacks; no ray is wasted when the power of a ray is lowered",
+        ],
+        source: "Neumann, Neumann, Bekaert et al. 1997",
+        method: Method { address: Address::PerElement, ..of_order(Order::Wdrs) },
+    },
+    NamedMethod {
+        name: "particle-tracing",
+        what: [
+            "particles leave from the point where they landed: a continuous walk,",
+            "free of all errors of the mesh but those of the tally",
+        ],
+        source: "Pattanaik & Mudur 1992",
+        method: PARTICLES,
+    },
+    NamedMethod {
+        name: "random-walk",
+        what: ["particles jump from element to element: a discrete walk;", "see --estimator and --direction"],
+        source: "Sbert 1997; Bekaert, Cools & Willems 1999",
+        method: RANDOM_WALK,
+    },
+    NamedMethod {
+        name: "keller",
+        what: [
+            "quasi-random walks: the whole path from one point, and of the particles",
+            "the first fraction goes on at each reflection",
+        ],
+        source: "Keller 1996",
+        method: Method { survival: Survival::Fraction, sequence: SequenceName::HALTON, ..PARTICLES },
+    },
+    NamedMethod {
+        name: "multipath",
+        what: [
+            "global lines, one after the other: what has landed on an element leaves",
+            "with the next line that crosses it",
+        ],
+        source: "Sbert, Pueyo, Neumann & Purgathofer 1996",
+        method: Method { lines: Lines::Global, address: Address::PerIteration, ..RANDOM_WALK },
+    },
+    NamedMethod {
+        name: "global-jacobi",
+        what: ["iterations in which every element sends its light along all global lines", "that cross it"],
+        source: "Sbert 1993; Sbert 1997",
+        method: Method { lines: Lines::Global, ..STOCHASTIC_JACOBI },
+    },
+    NamedMethod {
+        name: "transillumination",
+        what: [
+            "bundles of parallel lines across the whole scene: in each direction all",
+            "elements exchange their light",
+        ],
+        source: "Szirmay-Kalos & Purgathofer 1998; Sbert 1997",
+        method: Method { lines: Lines::Bundle, ..of_order(Order::BreadthFirst) },
+    },
+];
+
+impl Method {
+    /// The method called `name`.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`].
+    pub fn named(name: &str) -> Result<Method, Error> {
+        let found = METHODS.iter().find(|method| method.name == name);
+        found
+            .map(|found| found.method)
+            .ok_or_else(|| Error::unknown_name("method", name, METHODS.iter().map(|method| method.name)))
+    }
+
+    /// Its name in the literature, whatever numbers it draws and whichever visits score; or that of its order.
+    pub fn name(&self) -> &'static str {
+        let kind = |method: &Method| (method.walk, method.lines, method.order, method.survival);
+        METHODS.iter().find(|named| kind(&named.method) == kind(self)).map_or(self.order.name(), |named| named.name)
+    }
+
+    /// The address that suits the other axes.
+    pub fn natural_address(&self) -> Address {
+        match (self.order, self.lines, self.walk) {
+            (Order::DepthFirst, Lines::Local, Walk::Continuous) => Address::PerParticle,
+            (Order::DepthFirst, Lines::Local, Walk::Discrete) if self.survival == Survival::Fraction => {
+                Address::PerParticle
+            }
+            (Order::DepthFirst, Lines::Local, Walk::Discrete) | (Order::Wdrs, ..) => Address::PerElement,
+            _ => Address::PerIteration,
+        }
+    }
+
+    /// Whether light of many lines is pooled on the elements before it leaves: every order but the random walk.
+    pub fn pools(&self) -> bool {
+        self.order != Order::DepthFirst || self.lines != Lines::Local
+    }
+
+    /// What is needed to name it again: parameter and value of each axis that matters to it.
+    pub fn parameters(&self) -> Vec<(String, String)> {
+        let mut parameters = vec![
+            (Walk::NAME, self.walk.name()),
+            (Lines::NAME, self.lines.name()),
+            (Order::NAME, self.order.name()),
+            ("sequence", self.sequence.entry().name),
+            ("address", self.address.name()),
+        ];
+        if !self.pools() {
+            parameters.push((Direction::NAME, self.direction.name()));
+            parameters.push((Estimator::NAME, self.estimator.name()));
+            parameters.push((Survival::NAME, self.survival.name()));
+        }
+        if self.lines != Lines::Local {
+            parameters.push((FirstShot::NAME, self.first_shot.name()));
+        }
+        parameters.into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect()
+    }
+}

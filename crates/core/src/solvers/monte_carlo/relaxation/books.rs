@@ -1,0 +1,55 @@
+//! The ends of steps: what has landed falls on its element, and the books are kept.
+
+use super::draw::Draw;
+use super::{Origin, Relaxation};
+use crate::Problem;
+use crate::solution::Balance;
+
+impl Relaxation {
+    /// Ends a step that shot light for the first time, and keeps the books.
+    pub(super) fn reflect(&mut self, problem: &Problem, origin: Origin) {
+        let landed = self.light.reflect(&problem.mesh, origin);
+        self.balance.escaped += self.lost[0];
+        self.balance.back_face += self.lost[1];
+        self.balance.absorbed += landed.absorbed;
+        self.reflected += landed.reflected;
+        if matches!(self.draw, Draw::Lines(_)) {
+            self.adrift += self.shot - landed.absorbed - landed.reflected - self.lost[0] - self.lost[1];
+        }
+        let still_to_emit = if origin == Origin::Lamps { self.balance.emitted - self.shot } else { 0.0 };
+        self.balance.unshot = self.light.unshot_total() + still_to_emit + self.adrift;
+    }
+
+    /// Ends an iteration that shot all reflected light, and is averaged in with weight `share`. With the means over the
+    /// averaged iterations, what is shot is what lands and what is lost; the balance's unshot light is what the light reflected
+    /// now differs from what was shot: the noise of the iterations.
+    pub(super) fn iterate(&mut self, problem: &Problem, share: f32) {
+        self.light.average_in(share);
+        let share = f64::from(share);
+        let Balance { emitted, escaped, back_face, .. } = self.direct_balance;
+        let average = |direct: f64, mean: f64, now: f64| direct + (mean - direct) * (1.0 - share) + now * share;
+        self.balance.escaped = average(escaped, self.balance.escaped, self.lost[0]);
+        self.balance.back_face = average(back_face, self.balance.back_face, self.lost[1]);
+        let mesh = &problem.mesh;
+        let reflected = |e: u32| (mesh.reflectivity(e) * self.light.on(e)).luminance_f64();
+        let landed = |e: u32| self.light.on(e).luminance_f64();
+        self.reflected = mesh.elements().map(reflected).sum();
+        self.balance.absorbed = mesh.elements().map(landed).sum::<f64>() - self.reflected;
+        self.balance.unshot = emitted - self.balance.absorbed - self.balance.escaped - self.balance.back_face;
+    }
+
+    /// Flux [lm] of the rays that carried reflected light, were it spread evenly over them.
+    pub(super) fn reflected_ray_flux(&self) -> f64 {
+        self.reflected / self.reflected_rays.max(1) as f64
+    }
+
+    /// Merges what was gathered with what was shot.
+    pub(super) fn merge_gathered(&mut self, problem: &Problem) {
+        let Draw::Local(allocation) = &self.draw else { return };
+        for (e, n) in allocation.counts() {
+            let area = problem.mesh.area(e);
+            let gathered = self.light.landed(e) * area;
+            self.light.merge(e, gathered, self.merging.weights(area, n));
+        }
+    }
+}

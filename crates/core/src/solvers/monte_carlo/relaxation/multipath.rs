@@ -1,0 +1,50 @@
+//! Global multipath: light waits on an element for the next global line that crosses it (Sbert, Pueyo, Neumann & Purgathofer 1996).
+//!
+//! Each span of a line joins two ends; what waits at one leaves for the other, and so the other way round: with one line light takes
+//! many paths at once. Emission that was not shot before leaves in equal shares, `Pe_i / N_i` with each of the
+//! `N_i = N A_i / (2 pi R²)` expected crossings. Lines are traced in parallel; what they carry is booked one after the other, in their
+//! order. Unbiased: what still waits when the lines are used up is shot by further lines.
+
+use super::{Draw, Relaxation};
+use crate::Problem;
+use crate::math::Rgb;
+use crate::solvers::Part;
+use crate::solvers::monte_carlo::axes::FirstShot;
+use crate::transport::{Arrival, Span};
+
+impl Relaxation {
+    /// Lets light walk along the spans of `part`.
+    pub(super) fn walk_along(&mut self, problem: &Problem, part: &Part) {
+        let Draw::Lines(lines) = &self.draw else { return };
+        let crossings_per_area = lines.crossings_per_area() as f32;
+        for &Span { from, to } in &part.spans {
+            let leaving = [from, to].map(|end| self.leave(problem, end, crossings_per_area));
+            self.arrive(problem, to, leaving[0]);
+            self.arrive(problem, from, leaving[1]);
+        }
+    }
+
+    /// Takes the light [lm] that leaves `end` with this line.
+    fn leave(&mut self, problem: &Problem, end: Arrival, crossings_per_area: f32) -> Rgb {
+        let Arrival::Element { element, .. } = end else { return Rgb::BLACK };
+        let waiting = self.light.take_unshot(element);
+        let emitted = match self.method.first_shot {
+            FirstShot::Local => Rgb::BLACK,
+            FirstShot::Same => problem.mesh.emission(element) / crossings_per_area,
+        };
+        self.adrift -= emitted.luminance_f64();
+        waiting + emitted
+    }
+
+    fn arrive(&mut self, problem: &Problem, end: Arrival, light: Rgb) {
+        match end {
+            Arrival::Element { element, .. } => {
+                let landed = self.light.land_and_wait(&problem.mesh, element, light);
+                self.balance.absorbed += landed.absorbed;
+                self.reflected += landed.reflected;
+            }
+            Arrival::BackFace => self.lost[1] += light.luminance_f64(),
+            Arrival::Escaped => self.lost[0] += light.luminance_f64(),
+        }
+    }
+}

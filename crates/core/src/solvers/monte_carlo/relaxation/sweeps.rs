@@ -1,0 +1,76 @@
+//! The sweeps of one complete solution: one, or several of the order `staged`.
+//!
+//! Each sweep has twice the rays of the one before and is a solution of its own; the estimate is their mean, weighted with
+//! their rays (Feda & Purgathofer 1993).
+
+use crate::math::Rgb;
+use crate::solution::Balance;
+use crate::solvers::monte_carlo::axes::Order;
+use crate::solvers::monte_carlo::light::Light;
+
+/// Sweeps of the order `staged`.
+const STAGES: u32 = 4;
+
+/// What the finished sweeps of a complete solution gave.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub struct Sweeps {
+    count: u32,
+    done: u32,
+    /// Rays of the finished sweeps.
+    pub rays_before: u64,
+    /// Flux [lm] on every element, weighted with the sweeps' shares of the rays; empty if there is one sweep only.
+    flux: Vec<Rgb>,
+    /// The balances, so weighted.
+    balance: Balance,
+}
+
+impl Sweeps {
+    pub fn new(order: Order, elements: usize) -> Sweeps {
+        let count = if order == Order::Staged { STAGES } else { 1 };
+        let flux = vec![Rgb::BLACK; if count > 1 { elements } else { 0 }];
+        Sweeps { count, done: 0, rays_before: 0, flux, balance: Balance::default() }
+    }
+
+    pub fn reset(&mut self) {
+        (self.done, self.rays_before) = (0, 0);
+        self.flux.fill(Rgb::BLACK);
+        self.balance = Balance::default();
+    }
+
+    /// Share of the complete solution's rays that the running sweep has.
+    pub fn share(&self) -> f64 {
+        f64::from(1u32 << self.done.min(self.count - 1)) / f64::from((1u32 << self.count) - 1)
+    }
+
+    /// Takes in a finished sweep; whether another one follows.
+    pub fn close(&mut self, light: &Light, balance: Balance, rays: u64) -> bool {
+        if self.count == 1 {
+            return false;
+        }
+        let share = self.share();
+        self.flux.iter_mut().enumerate().for_each(|(e, flux)| *flux += light.on(e as u32) * share as f32);
+        self.balance = self.balance + balance / (1.0 / share);
+        self.rays_before = rays;
+        self.done += 1;
+        self.done < self.count
+    }
+
+    /// Flux [lm] on element `e`, on which the running sweep has brought `now`: of all sweeps if they are `complete`, else of the
+    /// finished ones, or of the running one if it is the first.
+    pub fn flux(&self, e: u32, now: Rgb, complete: bool) -> Rgb {
+        match self.flux.get(e as usize) {
+            Some(&flux) if complete => flux,
+            Some(&flux) if self.done > 0 => flux / self.share_done(),
+            _ => now,
+        }
+    }
+
+    /// The balance that belongs to [`Sweeps::flux`].
+    pub fn balance(&self, now: Balance) -> Balance {
+        if self.done == 0 { now } else { self.balance / f64::from(self.share_done()) }
+    }
+
+    fn share_done(&self) -> f32 {
+        ((1u32 << self.done) - 1) as f32 / ((1u32 << self.count) - 1) as f32
+    }
+}

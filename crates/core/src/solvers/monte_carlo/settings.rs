@@ -1,0 +1,37 @@
+//! How much work, and which random numbers.
+
+use super::method::{Method, STOCHASTIC_JACOBI};
+use crate::transport::Leaving;
+
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Settings {
+    pub method: Method,
+    pub seed: u64,
+    pub budget: Budget,
+    /// Independent complete solutions in a round, from 8; there are more if there are very many rays for each element.
+    pub replicates: u32,
+    /// From where pooled light leaves an element.
+    pub leaving: Leaving,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Budget {
+    /// The number of rays that [`crate::solvers::budget::rays`] recommends.
+    Heuristic,
+    /// This many rays, give or take the rays of one iteration.
+    Rays(u64),
+    /// Until the driver stops: rounds of replicates, each round with twice the rays of the one before.
+    Endless,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            method: STOCHASTIC_JACOBI,
+            seed: 1,
+            budget: Budget::Heuristic,
+            replicates: 16,
+            leaving: Leaving::default(),
+        }
+    }
+}

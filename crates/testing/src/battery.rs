@@ -1,0 +1,74 @@
+//! What every method must do, with any sample sequence: the list, and what it is tried on.
+
+use isolux_core::sampling::SequenceName;
+use isolux_core::sampling::address::Address;
+use isolux_core::solvers::monte_carlo::axes::{Direction, Estimator, FirstShot, Lines, Order, Survival};
+use isolux_core::solvers::monte_carlo::{METHODS, Method, Settings};
+use isolux_core::transport::Leaving;
+
+/// A method to be tried, and what to call it.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    pub name: String,
+    pub method: Method,
+}
+
+/// All methods of the table, and those of their variants that have ways of their own.
+pub fn methods() -> Vec<Trial> {
+    let named = METHODS.iter().map(|named| Trial { name: named.name.to_owned(), method: named.method });
+    let walk = Method::named("random-walk").expect("a method of the table");
+    let multipath = Method::named("multipath").expect("a method of the table");
+    let variants = [
+        ("random-walk, survival", Method { estimator: Estimator::Survival, ..walk }),
+        ("random-walk, absorption", Method { estimator: Estimator::Absorption, ..walk }),
+        ("random-walk, per particle", Method { address: Address::PerParticle, ..walk }),
+        ("random-walk, gathering", Method { direction: Direction::Gathering, ..walk }),
+        (
+            "random-walk, gathering, survival",
+            Method { direction: Direction::Gathering, estimator: Estimator::Survival, ..walk },
+        ),
+        (
+            "random-walk, gathering, absorption",
+            Method { direction: Direction::Gathering, estimator: Estimator::Absorption, ..walk },
+        ),
+        ("multipath, first shot by the same lines", Method { first_shot: FirstShot::Same, ..multipath }),
+        (
+            "transillumination, first shot by the same lines",
+            Method {
+                first_shot: FirstShot::Same,
+                ..Method::named("transillumination").expect("a method of the table")
+            },
+        ),
+    ];
+    named.chain(variants.map(|(name, method)| Trial { name: name.to_owned(), method })).collect()
+}
+
+/// All methods with all sequences.
+pub fn methods_and_sequences() -> impl Iterator<Item = Trial> {
+    methods().into_iter().flat_map(|Trial { name, method }| {
+        SequenceName::all().map(move |sequence| Trial {
+            name: format!("{name}, {}", sequence.entry().name),
+            method: Method { sequence, ..method },
+        })
+    })
+}
+
+/// Whether the mean over many runs is the exact solution. It is not where the counters of elements run on over steps, for
+/// points of one stream avoid each other; with random numbers they do not. Keller's walks end a particle's share too early.
+pub fn is_unbiased(method: &Method) -> bool {
+    let counters_run_on = method.address == Address::PerElement && method.sequence.entry().name != "random";
+    !counters_run_on && method.survival != Survival::Fraction
+}
+
+/// `settings` with another method, and elements of constant radiosity to the letter.
+pub fn with_method(method: Method, settings: Settings) -> Settings {
+    Settings { method, leaving: Leaving::WholeElement, ..settings }
+}
+
+/// Whether the balance of every run closes to rounding. Lines that cross an element as chance will send off more or less of its
+/// light, and iterations are noisy: there it is the unshot light that closes it.
+pub fn leaves_nothing(method: &Method) -> bool {
+    method.lines == Lines::Local
+        && !matches!(method.order, Order::StochasticRay | Order::Wdrs)
+        && method.direction == Direction::Shooting
+}
