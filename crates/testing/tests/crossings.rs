@@ -1,4 +1,5 @@
-//! The crossings of global lines and of bundles, one by one, against rays. Where they differ, a line passes within rounding of an edge.
+//! The crossings of global lines and of bundles, one by one, against rays. Where they differ, a line passes within rounding
+//! of an edge.
 
 use glam::{Vec2, Vec3};
 use isolux_core::Problem;

@@ -1,5 +1,5 @@
-//! Global lines and bundles: how often they cross, and who they say sees whom, against exact answers. Each test also sees its own
-//! planted fault.
+//! Global lines and bundles: how often they cross, and who they say sees whom, against exact answers. Each test also sees its
+//! own planted fault.
 
 use glam::Vec3;
 use isolux_core::Problem;
@@ -161,21 +161,23 @@ fn bundles_cross_and_see_what_lines_do() {
     assert!(bundle_deviations(&parallel, exact, polar).into_iter().all(|t| refutes(p_of_t(t, dof))));
 }
 
+/// Chi-square of the pairs of octants that spans join, against equal shares.
+fn pairs_of_octants(draw: impl FnOnce(&mut dyn FnMut(Span))) -> (f64, f64) {
+    let mut pairs = [0; 64];
+    draw(&mut |span| {
+        let [from, to] = elements(span).map(|end| end.expect("a line inside a sphere joins two fronts"));
+        pairs[(8 * from + to) as usize] += 1;
+    });
+    chi_square(&pairs, &[pairs.iter().sum::<u64>() as f64 / 64.0; 64])
+}
+
 #[test]
 fn inside_a_sphere_lines_join_every_pair_of_octants_alike() {
     const LINES: u64 = 100_000;
     let sphere = problem("sphere", 8);
-    let judge = |draw: &dyn Fn(&mut dyn FnMut(Span))| {
-        let mut pairs = [0; 64];
-        draw(&mut |span| {
-            let [from, to] = elements(span).map(|end| end.expect("a line inside a sphere joins two fronts"));
-            pairs[(8 * from + to) as usize] += 1;
-        });
-        chi_square(&pairs, &[pairs.iter().sum::<u64>() as f64 / 64.0; 64])
-    };
-    let (chi2, dof) = judge(&|each| global_line::trace(&sphere, independent().as_ref(), 0..LINES, each));
+    let (chi2, dof) = pairs_of_octants(|each| global_line::trace(&sphere, independent().as_ref(), 0..LINES, each));
     assert_chi2("form factors of the sphere by global lines", chi2, dof);
-    let (chi2, dof) = judge(&|each| lines_through_the_ball(&sphere, LINES, |_, span| each(span)));
+    let (chi2, dof) = pairs_of_octants(|each| lines_through_the_ball(&sphere, LINES, |_, span| each(span)));
     assert!(refutes(p_of_chi2(chi2, dof)));
 }
 

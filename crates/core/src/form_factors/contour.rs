@@ -24,7 +24,7 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// All elements as polygons.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Contour {
     elements: Vec<Flat>,
     /// Heights [m] above a plane that are nothing but rounding.
@@ -32,7 +32,7 @@ pub struct Contour {
     visibility: Visibility,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 struct Flat {
     corners: [DVec3; 3],
     plane: Plane,

@@ -25,7 +25,7 @@ const DIVISIONS: Range<u16> = 1..65;
 const BATCH: usize = 512;
 
 /// Directions and delta form factors of the pixels, in the frame of a surface.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Hemicube {
     pixels: Vec<(Vec3, f64)>,
     /// A hemicube stands on each of the `divisions²` cells of an element.

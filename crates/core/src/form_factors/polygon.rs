@@ -5,7 +5,7 @@ use crate::mesh::cells;
 use glam::{DVec3, Vec2};
 
 /// A plane: the points x with `normal · x = offset`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Plane {
     pub normal: DVec3,
     pub offset: f64,

@@ -18,7 +18,7 @@ const MOST_DIVISIONS: u16 = 16;
 /// A ray stops this share of its length before its target.
 const SHORTER: f32 = 1e-4;
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Visibility {
     divisions: u16,
 }

@@ -1,11 +1,11 @@
 //! Bundles: many parallel global lines at once (Sbert 1997; Szirmay-Kalos & Purgathofer 1998).
 //!
-//! The lines of a bundle have one direction, uniform over the sphere, and form a regular grid across it with cells of area a, moved
-//! as a whole by a uniform offset. A bundle crosses an element of area A that it meets at an angle t about `A |cos t| / a` times,
-//! `A / (2 a)` times in the mean over all directions. Each line alone is a global line, so all that is true of those holds;
-//! but the lines of a bundle are not independent: errors fall with the number of bundles, not of lines.
+//! The lines of a bundle have one direction, uniform over the sphere, and form a regular grid across it with cells of area a,
+//! moved as a whole by a uniform offset. A bundle crosses an element of area A that it meets at an angle t about `A |cos t| /
+//! a` times, `A / (2 a)` times in the mean over all directions. Each line alone is a global line, so all that is true of
+//! those holds; but the lines of a bundle are not independent: errors fall with the number of bundles, not of lines.
 //!
-//! Unbiased, but for corners rounded to 1/65,536 of a cell. Cost: O(triangles) a bundle, and then a few nanoseconds a crossing, by
+//! Unbiased, but for corners rounded to 1/65,536 of a cell. Cost: O(triangles) a bundle, and then O(crossings), by
 //! rasterisation; the analytic sphere is traced by rays.
 
 use super::span::{Span, spans};

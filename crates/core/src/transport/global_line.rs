@@ -1,9 +1,9 @@
 //! Global lines: chosen without regard to any surface, so that they meet all of them (Sbert 1993).
 //!
-//! A global line joins two uniform points of the bounding sphere, radius R. Such lines are uniform: of N lines `N A / (2 pi R²)`
-//! are expected to cross a plane surface of area A, uniformly over it and cosine-distributed about its normal. So a crossing is a
-//! local line, `N_ij / N_i` tends to the form factor `F_ij`, and each span serves both its ends. The density cannot be
-//! steered: small elements get few lines.
+//! A global line joins two uniform points of the bounding sphere, radius R. Such lines are uniform: of N lines `N A / (2 pi
+//! R²)` are expected to cross a plane surface of area A, uniformly over it and cosine-distributed about its normal. So a
+//! crossing is a local line, `N_ij / N_i` tends to the form factor `F_ij`, and each span serves both its ends. The density
+//! cannot be steered: small elements get few lines.
 //!
 //! Unbiased. Cost: one ray of all hits a line.
 

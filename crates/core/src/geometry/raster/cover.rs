@@ -7,9 +7,10 @@
 //! ```
 //!
 //! is then an integer below 2^62 and tells without any rounding on which side of the edge a point lies. A point *on* an edge
-//! belongs to the triangle if the edge is a left one, or a horizontal one with the triangle above it. For the triangle on the other
-//! side the same edge is a right one, or has it below: of two neighbours exactly one covers the point, and of all triangles
-//! around a corner exactly one covers the corner. So a line meets a closed surface neither twice at one place nor never.
+//! belongs to the triangle if the edge is a left one, or a horizontal one with the triangle above it. For the triangle on the
+//! other side the same edge is a right one, or has it below: of two neighbours exactly one covers the point, and of all
+//! triangles around a corner exactly one covers the corner. So a line meets a closed surface neither twice at one place nor
+//! never.
 //!
 //! Each edge bounds the covered points of a row on one side, by an integer division. Cost: three divisions a row.
 
@@ -45,8 +46,8 @@ impl Projected {
         [range(self.x), range(self.y)]
     }
 
-    /// Hands the column and row of every point in these ranges that the triangle, number `triangle`, covers to `each`, and the hit of
-    /// the line there.
+    /// Hands the column and row of every point in these ranges that the triangle, number `triangle`, covers to `each`, and
+    /// the hit of the line there.
     #[inline]
     pub fn cover(&self, triangle: u32, [columns, rows]: [Range<u32>; 2], mut each: impl FnMut(u32, u32, Hit)) {
         let [a, mut b, mut c] = [0, 1, 2].map(|k| [i64::from(self.x[k]), i64::from(self.y[k])]);

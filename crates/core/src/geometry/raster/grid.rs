@@ -1,9 +1,9 @@
 //! A regular grid of parallel lines around a scene.
 //!
-//! The lines pass through the points `((i + x) h - R, (j + y) h - R)` of the plane through the centre of the bounding sphere across
-//! their direction, `h = 2 R / cells`, one for every cell (i, j) of a square. The offset (x, y) in [0, 1)² moves the grid as a
-//! whole, so every point of the plane over the sphere is as likely to lie on a line as any other, and there are
-//! `1 / h²` lines a square metre.
+//! The lines pass through the points `((i + x) h - R, (j + y) h - R)` of the plane through the centre of the bounding sphere
+//! across their direction, `h = 2 R / cells`, one for every cell (i, j) of a square. The offset (x, y) in [0, 1)² moves the
+//! grid as a whole, so every point of the plane over the sphere is as likely to lie on a line as any other, and there are `1
+//! / h²` lines a square metre.
 
 use super::cover::{Projected, SUBCELLS};
 use crate::geometry::Ray;
@@ -27,8 +27,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// `cells` by `cells` lines along the unit vector `direction` around a sphere (centre, radius [m]); 1 to [`MOST_CELLS`], others
-    /// are taken as the nearest of these.
+    /// `cells` by `cells` lines along the unit vector `direction` around a sphere (centre, radius [m]); 1 to [`MOST_CELLS`],
+    /// others are taken as the nearest of these.
     pub fn new((center, radius): (Vec3, f32), direction: Vec3, offset: Vec2, cells: u32) -> Grid {
         Grid { frame: Frame::about(direction), center, radius, cells: cells.clamp(1, MOST_CELLS), offset }
     }

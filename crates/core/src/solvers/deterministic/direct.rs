@@ -20,7 +20,7 @@ pub const NAME: &str = "direct";
 const MOST_ELEMENTS: usize = 4000;
 
 /// Before or after the one step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Direct {
     irradiance: Vec<Light>,
     emitted: f64,

@@ -23,7 +23,7 @@ const BLOCK: usize = 64;
 const ROWS_PER_PIECE: usize = 8;
 
 /// The state of a sweep.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct GaussSeidel {
     limit: f64,
     irradiance: Vec<Light>,

@@ -21,7 +21,7 @@ use crate::{Error, Problem};
 const ROWS_PER_PIECE: usize = 128;
 
 /// The direction of the work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Form {
     Gather,
     Shoot,
@@ -41,7 +41,7 @@ impl Form {
 }
 
 /// The state of an iteration.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Jacobi {
     form: Form,
     limit: f64,

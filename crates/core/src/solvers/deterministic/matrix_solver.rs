@@ -8,7 +8,9 @@ use crate::solution::{Solution, Work};
 use crate::solvers::{Landing, Part, Progress, Solver};
 use crate::transport::Spot;
 use crate::{Error, Problem};
+use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Rows of form factors of one piece.
 const ROWS_PER_PIECE: u64 = 16;
@@ -39,10 +41,13 @@ pub trait Method: Send + Sync {
 }
 
 /// A [`Method`] with the matrix it works on.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub struct MatrixSolver<M> {
-    name: &'static str,
+    name: Cow<'static, str>,
     settings: Settings,
-    way: Box<dyn Way>,
+    /// Made from the settings, again if the state was loaded; `None` if that fails with another problem than before.
+    #[serde(skip)]
+    way: OnceLock<Option<Box<dyn Way>>>,
     elements: u64,
     /// Rows so far; empty when the system is complete.
     rows: Vec<Row>,
@@ -64,9 +69,9 @@ impl<M: Method> MatrixSolver<M> {
         check(problem, settings)?;
         let surfaces = Surfaces::of(problem);
         Ok(MatrixSolver {
-            name,
+            name: name.into(),
             settings: settings.clone(),
-            way: form_factors::way(&settings.way, problem, &settings.factors)?,
+            way: OnceLock::from(Some(form_factors::way(&settings.way, problem, &settings.factors)?)),
             elements: problem.mesh.len() as u64,
             rows: Vec::new(),
             method: method(&surfaces),
@@ -83,11 +88,17 @@ impl<M: Method> MatrixSolver<M> {
         }
     }
 
+    fn way(&self, problem: &Problem) -> Option<&dyn Way> {
+        let make = || form_factors::way(&self.settings.way, problem, &self.settings.factors).ok();
+        self.way.get_or_init(make).as_deref()
+    }
+
     fn end_step(&mut self, problem: &Problem) {
         match &self.system {
             None => {
                 let rows = std::mem::take(&mut self.rows);
-                let factors = form_factors::assemble(problem, &*self.way, rows);
+                let Some(way) = self.way(problem) else { return };
+                let factors = form_factors::assemble(problem, way, rows);
                 let factors = self.settings.correction.apply(factors);
                 self.system = Some(System { factors, surfaces: self.surfaces.clone() });
             }
@@ -105,7 +116,8 @@ impl<M: Method> Solver for MatrixSolver<M> {
         match &self.system {
             None => {
                 let elements = piece * ROWS_PER_PIECE..((piece + 1) * ROWS_PER_PIECE).min(self.elements);
-                let rows = elements.map(|e| self.way.row(problem, e as u32)).collect();
+                let Some(way) = self.way(problem) else { return Part::default() };
+                let rows = elements.map(|e| way.row(problem, e as u32)).collect();
                 Part { rows, ..Part::default() }
             }
             Some(system) => Part { landings: self.method.part(system, piece), ..Part::default() },
@@ -149,7 +161,7 @@ impl<M: Method> Solver for MatrixSolver<M> {
             std_error: vec![Rgb::grey(f32::NAN); irradiance.len()],
             work: Work::default(),
             balance,
-            provenance: provenance(problem, self.name, parameters, seed),
+            provenance: provenance(problem, &self.name, parameters, seed),
         }
     }
 

@@ -30,7 +30,7 @@ const RAYS_PER_PIECE: u64 = 2048;
 const PATIENCE: (u64, u64) = (1000, 100_000);
 
 /// The state of the relaxation, 100 bytes an element.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Southwell {
     settings: Settings,
     hemicube: Hemicube,

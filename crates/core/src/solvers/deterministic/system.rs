@@ -9,14 +9,14 @@ use crate::solution::Balance;
 pub type Light = [f64; 3];
 
 /// `B = Be + rho E`, `E = F B`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct System {
     pub factors: FormFactors,
     pub surfaces: Surfaces,
 }
 
 /// What elements emit [lm/m²] and reflect, and their areas [m²].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Surfaces {
     pub emission: Vec<Light>,
     pub reflectivity: Vec<Light>,

@@ -226,19 +226,35 @@ mod tests {
     use crate::mesh::Resolution;
     use crate::scene::builtin::builtin;
     use crate::solvers::monte_carlo::Settings;
+    use crate::transport::Leaving;
 
-    /// A complete solution of a box with rays of 2 mlm, reached in `halvings` refinements.
-    fn solved(problem: &Problem, halvings: i32) -> Wdrs {
-        let method = Method::named("wdrs").unwrap();
-        let mut wdrs = Wdrs::new(problem, &Settings { method, ..Settings::default() });
-        let experience = Experience::expected(problem);
-        wdrs.restart(problem, 7, 1000, &experience);
+    /// A grey box: nothing but the counters is left of how the rays came about.
+    fn grey_box() -> Problem {
+        let mut scene = builtin("box").unwrap();
+        for material in &mut scene.materials {
+            material.reflectivity = Rgb::grey(material.reflectivity.luminance());
+            material.emission = Rgb::grey(material.emission.luminance());
+        }
+        Problem::new(scene, Resolution::Elements(200)).unwrap()
+    }
+
+    fn started(problem: &Problem) -> Wdrs {
+        let settings =
+            Settings { method: Method::named("wdrs").unwrap(), leaving: Leaving::WholeElement, ..Settings::default() };
+        let mut wdrs = Wdrs::new(problem, &settings);
+        wdrs.restart(problem, 7, 1000, &Experience::expected(problem));
         wdrs.patience = u64::MAX;
-        wdrs.start(problem, 2e-3 * wdrs.emitted, halvings);
+        wdrs
+    }
+
+    /// A complete solution with some four thousand rays, reached in `halvings` refinements.
+    fn solved(problem: &Problem, halvings: i32) -> Wdrs {
+        let mut wdrs = started(problem);
+        wdrs.start(problem, 5e-4 * wdrs.emitted, halvings);
         while let Some(pieces) = wdrs.pieces() {
             for piece in pieces {
                 let part = wdrs.part(problem, piece);
-                wdrs.absorb(problem, part, &experience);
+                wdrs.absorb(problem, part, &Experience::expected(problem));
             }
         }
         wdrs
@@ -246,20 +262,35 @@ mod tests {
 
     #[test]
     fn refinements_shoot_the_same_rays_as_one_go() {
-        let mut scene = builtin("box").unwrap();
-        // Without colours nothing but the counters is left of how the rays came about.
-        scene.materials.iter_mut().for_each(|m| m.reflectivity = Rgb::grey(m.reflectivity.luminance()));
-        scene.materials.iter_mut().for_each(|m| m.emission = Rgb::grey(m.emission.luminance()));
-        let problem = Problem::new(scene, Resolution::Elements(200)).unwrap();
-        let at_once = solved(&problem, 0);
-        assert!(at_once.rays_done > 1000, "{}", at_once.rays_done);
-        for halvings in 1..=5 {
+        let problem = grey_box();
+        for halvings in 0..=5 {
             let refined = solved(&problem, halvings);
-            assert_eq!((&refined.shot, refined.rays_done), (&at_once.shot, at_once.rays_done), "{halvings} halvings");
-            for e in problem.mesh.elements() {
-                let [a, b] = [&at_once, &refined].map(|wdrs| wdrs.irradiance(&problem, e).g);
-                assert!((a - b).abs() <= 1e-4 * a, "element {e}: {a} {b}");
+            assert!(refined.rays_done > 1000, "{}", refined.rays_done);
+            // All rays that the counters stand for, shot in a single sweep.
+            let allocation = Allocation::of_counts((0..).zip(refined.shot.iter().copied()));
+            assert_eq!(allocation.rays(), refined.rays_done, "no ray was wasted");
+            let sequence = refined.method.sequence.make(refined.method.address.sequence_seed(refined.seed, 0));
+            let counters = &refined.method.address.counters(refined.shot.len());
+            let (sequence, total) = (sequence.as_ref(), refined.ray_flux * allocation.rays() as f64);
+            let sweep = shooting::Sweep { problem: &problem, sequence, counters, allocation: &allocation, total };
+            let mut landed = vec![0.0; problem.mesh.len()];
+            for piece in 0..shooting::pieces(allocation.rays()) {
+                let part = sweep.shoot_each(piece, |_| (Rgb::grey(refined.ray_flux as f32), Footprint::WHOLE));
+                part.landings.iter().for_each(|landing| landed[landing.element as usize] += landing.light[1]);
             }
+            for e in problem.mesh.elements() {
+                let [a, b] = [landed[e as usize] / problem.mesh.area(e), refined.irradiance(&problem, e).g];
+                assert!((a - b).abs() <= 1e-4 * a, "element {e}: {a} {b} after {halvings} halvings");
+            }
+        }
+    }
+
+    #[test]
+    fn refinements_end_where_one_go_does_but_for_rounding() {
+        let problem = grey_box();
+        let rays = |halvings| solved(&problem, halvings).rays_done as f64;
+        for halvings in 1..=5 {
+            assert!((rays(halvings) / rays(0) - 1.0).abs() < 0.01, "{} {}", rays(halvings), rays(0));
         }
     }
 }

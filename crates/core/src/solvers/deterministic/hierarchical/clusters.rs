@@ -9,7 +9,7 @@ use glam::DVec3;
 pub const SAMPLES: usize = 4;
 
 /// Elements of one plane that exchange light as one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Cluster {
     /// Numbers of its halves; `None` for a single element.
     pub halves: Option<[u32; 2]>,
@@ -24,7 +24,7 @@ pub struct Cluster {
 }
 
 /// All clusters; halves come after their whole.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Clusters {
     pub all: Vec<Cluster>,
     /// Those that are no half of another: one for each side of a triangle.

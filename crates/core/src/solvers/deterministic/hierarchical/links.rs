@@ -17,7 +17,7 @@ const PARTLY_BLOCKED: f64 = 0.25;
 const SHORTER: f32 = 1e-4;
 
 /// Two clusters that exchange light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Link {
     pub ends: [u32; 2],
     /// Exchange area `A_p F_pq` [m²]; NaN while it is unknown.

@@ -42,7 +42,7 @@ const MOST_ROOTS: usize = 6000;
 /// Rounds of refinement.
 const MOST_ROUNDS: u32 = 10;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 enum Stage {
     Refining,
     Gathering,
@@ -50,7 +50,7 @@ enum Stage {
 }
 
 /// The state of the iteration.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Hierarchical {
     settings: Settings,
     contour: Contour,

@@ -188,7 +188,8 @@ impl Relaxation {
 
     fn plan(&self, experience: &Experience) -> Plan {
         let rays = (self.rays_planned as f64 * self.sweeps.share()) as u64;
-        Plan { order: self.method.order, rays, experience: *experience }
+        let gathers = Stage::of(self.method).contains(&Stage::Gathering);
+        Plan { order: self.method.order, gathers, rays, experience: *experience }
     }
 
     fn shoot(&self, problem: &Problem, allocation: &Allocation, sequence: &dyn Sequence, piece: u64) -> Part {

@@ -8,7 +8,7 @@ use super::stage::Stage;
 use crate::solvers::monte_carlo::Experience;
 use crate::solvers::monte_carlo::axes::Order;
 
-/// Share of the rays of stochastic Jacobi that shoot; the others gather.
+/// Share of the rays that shoot where the others gather.
 const SHOOTING_SHARE: f64 = 0.6;
 /// Incremental shooting stops when less than this share of the emitted power is unshot, and warming up when as little of it can
 /// be missing.
@@ -27,6 +27,8 @@ const LEFT_OVER_SHARE: f64 = 0.1;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
     pub order: Order,
+    /// Whether the last stage gathers: stochastic Jacobi along local lines.
+    pub gathers: bool,
     pub rays: u64,
     pub experience: Experience,
 }
@@ -36,7 +38,7 @@ impl Plan {
     /// nothing to do.
     pub fn rays_of_step(&self, stage: Stage, share: f64, done: u64) -> u64 {
         let jacobi = self.order == Order::StochasticJacobi;
-        let shooting = if jacobi { SHOOTING_SHARE } else { 1.0 } * self.rays as f64;
+        let shooting = if self.gathers { SHOOTING_SHARE } else { 1.0 } * self.rays as f64;
         let emission = shooting / (1.0 + self.experience.reflected_share);
         let reflected = shooting - emission;
         match stage {
@@ -75,7 +77,7 @@ mod tests {
     use super::*;
 
     fn plan(rays: u64) -> Plan {
-        Plan { order: Order::StochasticJacobi, rays, experience: Experience { reflected_share: 1.0 } }
+        Plan { order: Order::StochasticJacobi, gathers: true, rays, experience: Experience { reflected_share: 1.0 } }
     }
 
     #[test]
@@ -116,7 +118,7 @@ mod tests {
 
     #[test]
     fn the_rays_of_stochastic_ray_radiosity_add_up() {
-        let plan = Plan { order: Order::StochasticRay, ..plan(100_000) };
+        let plan = Plan { order: Order::StochasticRay, gathers: false, ..plan(100_000) };
         let emission = plan.rays_of_step(Stage::Emission, 1.0, 0);
         let warm_up = u64::from(plan.warm_up()) * plan.rays_of_step(Stage::WarmUp, 1.0, 0);
         let averaged = u64::from(AVERAGED) * plan.rays_of_step(Stage::Regular, 1.0, 0);
