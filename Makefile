@@ -3,10 +3,11 @@
 #   make test    every test
 #   make bench   speed of the ray kernel and of global lines
 #   make study-reference-rooms    real rooms against an independent renderer
+#   make study-methods            all methods on one scene, error and time
 
 ISOLUX = target/release/isolux
 
-.PHONY: demo test bench lint build study-reference-rooms
+.PHONY: demo test bench lint build study-reference-rooms study-methods
 
 build:
 	cargo build --release --locked
@@ -32,3 +33,6 @@ lint:
 
 study-reference-rooms:
 	cargo run --release --locked -p isolux-testing --bin reference-rooms
+
+study-methods:
+	cargo run --release --locked -p isolux-testing --bin methods
