@@ -154,3 +154,41 @@ fn parse_sequence(text: &str) -> Result<SequenceName, String> {
 fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
     format!("it is one of {}", names.collect::<Vec<_>>().join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Command {
+        #[command(flatten)]
+        method: MethodArguments,
+    }
+
+    fn arguments(text: &str) -> MethodArguments {
+        Command::try_parse_from(text.split(' ')).map(|command| command.method).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn an_axis_changes_the_named_method_and_brings_the_address_that_suits_it() {
+        let method = arguments("solve --order depth-first --sequence halton").method().unwrap();
+        assert_eq!((method.order, method.address), (Order::DepthFirst, Address::PerElement));
+        assert_eq!(method.sequence.entry().name, "halton");
+        let method = arguments("solve --order depth-first --walk continuous").method().unwrap();
+        assert_eq!(method, Method::named("particle-tracing").unwrap());
+        let method = arguments("solve --method random-walk --address per-particle").method().unwrap();
+        assert_eq!(method.address, Address::PerParticle);
+    }
+
+    #[test]
+    fn what_has_no_meaning_is_refused_with_what_is_nearest() {
+        let refused = |text: &str| arguments(text).method().unwrap_err().to_string();
+        assert!(refused("solve --walk continuous --lines bundle").contains("nearest is --walk discrete"));
+        assert!(refused("solve --method jacobi-gathe").contains("did you mean 'jacobi-gather'"));
+        let direct = arguments("solve --method direct --order wdrs");
+        assert!(direct.is_deterministic() && direct.deterministic(1).is_err());
+        let hemicube = arguments("solve --method direct --factors hemicube --unshot 0.01").deterministic(7).unwrap();
+        assert_eq!((hemicube.way.as_str(), hemicube.unshot, hemicube.factors.seed), ("hemicube", 0.01, 7));
+    }
+}

@@ -84,7 +84,7 @@ pub struct Solve {
     #[arg(long, value_name = "R", default_value_t = Settings::default().replicates)]
     replicates: u32,
 
-    /// From where on an element reflected light leaves: where-landed leaks four times less under walls and behind
+    /// From where on an element reflected light leaves: where-landed hardly leaks under walls and behind
     /// frames, whole-element is the radiosity system to the letter
     #[arg(long, default_value = Leaving::default().name(), value_parser = parse_leaving)]
     leaving: Leaving,

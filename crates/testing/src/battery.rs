@@ -53,11 +53,14 @@ pub fn methods_and_sequences() -> impl Iterator<Item = Trial> {
     })
 }
 
-/// Whether the mean over many runs is the exact solution. It is not where the counters of elements run on over steps, for
-/// points of one stream avoid each other; with random numbers they do not. Keller's walks end a particle's share too early.
+/// Whether the mean over many runs is the exact solution. It is not where light leaves with a later point of the sequence that
+/// brought it, for the points of one sequence avoid each other: the counters of elements run on over steps, and multipath sends
+/// light along one line after the other. With random numbers it is. Keller's walks end a particle's share too early.
 pub fn is_unbiased(method: &Method) -> bool {
-    let counters_run_on = method.address == Address::PerElement && method.sequence.entry().name != "random";
-    !counters_run_on && method.survival != Survival::Fraction
+    let runs_on = method.address == Address::PerElement;
+    let multipath = method.order == Order::DepthFirst && method.lines == Lines::Global;
+    let independent = method.sequence == SequenceName::RANDOM || !(runs_on || multipath);
+    independent && method.survival != Survival::Fraction
 }
 
 /// `settings` with another method, and elements of constant radiosity to the letter.

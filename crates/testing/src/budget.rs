@@ -13,10 +13,10 @@ pub const FALSE_ALARM: f64 = 1e-6;
 
 /// All statistical tests and how many comparisons each makes at most.
 pub const REGISTER: &[(&str, u32)] = &[
-    // So many methods with so many sequences in a box of six faces, and the methods alone in a sphere of eight octants.
+    // So many methods with so many sequences, in a box of six faces and a sphere of eight octants.
     ("battery: box", 19 * 8 * comparisons(6)),
     ("battery: furnace", 19 * 8 * comparisons(6)),
-    ("battery: sphere", 19 * comparisons(8)),
+    ("battery: sphere", 19 * 8 * comparisons(8)),
     ("form factors of the sphere by local lines", 8),
     ("uniform points of a sphere's element", 1),
     ("form factors of rectangles by local lines", 3),

@@ -37,6 +37,7 @@ pub struct SequenceName(&'static Entry);
 impl SequenceName {
     pub const OWEN_SOBOL: SequenceName = SequenceName(&owen_sobol::ENTRY);
     pub const HALTON: SequenceName = SequenceName(&halton::ENTRY);
+    pub const RANDOM: SequenceName = SequenceName(&random::ENTRY);
 
     /// All choices, in the order of the table.
     pub fn all() -> impl Iterator<Item = SequenceName> {

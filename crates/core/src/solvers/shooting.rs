@@ -73,11 +73,11 @@ impl Sweep<'_> {
 
     /// Hands the rays of `share` to `each`.
     fn depart(&self, share: Share, footprint: Footprint, mut each: impl FnMut(Ray)) {
-        let Share { source, before, count, .. } = share;
+        let Share { source, before, count, rays } = share;
         let elements = self.problem.mesh.len() as u32;
         let first = self.counters.next(source) + u64::from(before);
         if source < elements {
-            let departure = Departure::new(self.problem, source, footprint);
+            let departure = Departure::new(self.problem, source, footprint.for_lines(rays));
             for_samples(self.sequence, source, first, count, |sample| each(departure.ray(sample)));
         } else {
             let light = &self.problem.scene.lights[(source - elements) as usize];

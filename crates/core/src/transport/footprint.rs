@@ -8,7 +8,8 @@
 //!
 //! This is the continuous walk (Pattanaik & Mudur 1992: the next line starts where the last one ended) with the memory of the
 //! discrete one. A spot is a 121st of a cell, so leaks shrink as if elements were 33 times shorter. Nine points are few for
-//! thousands of rays, so a solver had better make more steps then than longer ones.
+//! many lines: where more than two leave from each, as close to a lamp, they leave from anywhere on the cell, and a solver had
+//! better make more steps than longer ones.
 
 use crate::math::hash::mix;
 use crate::math::warp::square_to_triangle;
@@ -25,6 +26,10 @@ const HALVING: u64 = 1 << (CELLS * COUNT_BITS);
 /// Bits of the number of a spot.
 const SPOT_BITS: u32 = 7;
 const SPOT_MASK: u64 = (1 << SPOT_BITS) - 1;
+/// In place of a spot: anywhere on the cell.
+const ANYWHERE: u64 = SPOT_MASK;
+/// Most lines that a spot stands for.
+const LINES_OF_SPOT: u32 = 2;
 
 /// From where light leaves an element.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -122,6 +127,15 @@ impl Footprint {
         self.counts += other.counts & (HALVING - 1);
     }
 
+    /// The same for so many `lines` that leave together: if they are too many for the spots, from anywhere on the cells.
+    pub fn for_lines(mut self, lines: u32) -> Footprint {
+        let lit = (0..CELLS).filter(|&cell| self.count(cell) > 0).count() as u32;
+        if lines > LINES_OF_SPOT * lit {
+            (0..CELLS).for_each(|cell| self.remember(cell, ANYWHERE));
+        }
+        self
+    }
+
     /// How much brighter than the mean of the element the cell of `spot` is.
     pub fn density(self, spot: Spot) -> f32 {
         self.density_of_cell(spot.cell())
@@ -149,8 +163,11 @@ impl Footprint {
             left -= count;
         }
         let (cell, rest) = last;
-        let on_spot = square_to_triangle(Vec2::new(rest, s.y));
-        let on_cell = inside(cells::corners(self.remembered(cell) as u32, DIVISIONS[1]), on_spot);
+        let anywhere = square_to_triangle(Vec2::new(rest, s.y));
+        let on_cell = match self.remembered(cell) {
+            ANYWHERE => anywhere,
+            spot => inside(cells::corners(spot as u32, DIVISIONS[1]), anywhere),
+        };
         inside(cells::corners(cell, DIVISIONS[0]), on_cell)
     }
 
@@ -222,6 +239,20 @@ mod tests {
         }
         assert_eq!((counts[2], counts[7]), (9000, 1000), "{counts:?}");
         assert!((footprint.density(corner_of(2)) - 8.1).abs() < 1e-6 && footprint.density(corner_of(0)) == 0.0);
+    }
+
+    #[test]
+    fn many_lines_leave_from_all_of_a_cell_and_few_from_the_spot() {
+        let spots = |lines| {
+            let footprint = lopsided(50, 1).for_lines(lines);
+            let point = |k: u32| footprint.point(Vec2::new((k % 20) as f32 + 0.5, (k / 20) as f32 + 0.5) / 20.0);
+            let mut spots: Vec<u64> = (0..400).map(|k| Spot::at(point(k)).on_cell()).collect();
+            spots.sort_unstable();
+            spots.dedup();
+            spots.len()
+        };
+        assert_eq!(spots(4), 1);
+        assert!(spots(5) > 100, "{}", spots(5));
     }
 
     #[test]

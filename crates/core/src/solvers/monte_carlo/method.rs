@@ -118,7 +118,12 @@ pub const METHODS: &[NamedMethod] = &[
             "with the next line that crosses it",
         ],
         source: "Sbert, Pueyo, Neumann & Purgathofer 1996",
-        method: Method { lines: Lines::Global, address: Address::PerIteration, ..RANDOM_WALK },
+        method: Method {
+            lines: Lines::Global,
+            address: Address::PerIteration,
+            sequence: SequenceName::RANDOM,
+            ..RANDOM_WALK
+        },
     },
     NamedMethod {
         name: "global-jacobi",

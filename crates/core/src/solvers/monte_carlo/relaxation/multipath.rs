@@ -3,7 +3,10 @@
 //! Each span of a line joins two ends; what waits at one leaves for the other, and so the other way round: with one line light takes
 //! many paths at once. Emission that was not shot before leaves in equal shares, `Pe_i / N_i` with each of the
 //! `N_i = N A_i / (2 pi R²)` expected crossings. Lines are traced in parallel; what they carry is booked one after the other, in their
-//! order. Unbiased: what still waits when the lines are used up is shot by further lines.
+//! order. What still waits when the lines are used up is shot by further lines.
+//!
+//! Unbiased with random numbers. The lines of a low-discrepancy sequence avoid one another, so the line with which light leaves is not
+//! independent of the one that brought it, and the estimate is biased (a test has seen it with Niederreiter's).
 
 use super::{Draw, Relaxation};
 use crate::Problem;
