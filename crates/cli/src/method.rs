@@ -52,53 +52,68 @@ pub struct MethodArguments {
     #[arg(long, value_parser = parse_axis::<FirstShot>)]
     first_shot: Option<FirstShot>,
 
-    /// Deterministic methods: form factors by contour, hemicube, local-lines or global-lines
-    #[arg(long, value_name = "WAY", default_value = WAYS[0].name, value_parser = parse_way)]
-    factors: &'static str,
+    /// Deterministic methods on a matrix: form factors by contour, hemicube, local-lines or global-lines [default: contour]
+    #[arg(long, value_name = "WAY", value_parser = parse_way)]
+    factors: Option<&'static str>,
 
-    /// Deterministic methods: iterate until less than this share of the emitted power is unshot
-    #[arg(long, value_name = "SHARE", default_value_t = deterministic::Settings::default().unshot)]
-    unshot: f64,
+    /// Deterministic methods that iterate: until less than this share of the emitted power is unshot [default: 0.00001]
+    #[arg(long, value_name = "SHARE")]
+    unshot: Option<f64>,
 
     /// southwell: add what the unshot light will do on average, for display
     #[arg(long)]
     ambient: bool,
 
-    /// hierarchical: most power, as a share of the emitted, that a link carries without being refined
-    #[arg(long, value_name = "SHARE", default_value_t = deterministic::Settings::default().link_power)]
-    link_power: f64,
+    /// hierarchical: most power, as a share of the emitted, that a link carries without being refined [default: 0.00001]
+    #[arg(long, value_name = "SHARE")]
+    link_power: Option<f64>,
 }
 
 impl MethodArguments {
-    /// The name that was asked for.
-    pub fn name(&self) -> &str {
-        &self.method
-    }
-
-    /// Whether a deterministic method is asked for.
-    pub fn is_deterministic(&self) -> bool {
-        DETERMINISTIC.iter().any(|entry| entry.name == self.method)
+    /// The deterministic method that is asked for, if it is one.
+    pub fn deterministic(&self) -> Option<&'static deterministic::Entry> {
+        DETERMINISTIC.iter().find(|entry| entry.name == self.method)
     }
 
     /// What a deterministic method is told.
     ///
     /// # Errors
-    /// A failure if an axis of Monte Carlo is asked for as well.
-    pub fn deterministic(&self, seed: u64) -> Result<deterministic::Settings, Failure> {
+    /// A failure if an axis of Monte Carlo is asked for as well, or a setting that does not concern this method.
+    pub fn deterministic_settings(
+        &self,
+        entry: &deterministic::Entry,
+        seed: u64,
+    ) -> Result<deterministic::Settings, Failure> {
         if self.moves_an_axis() {
             let what =
-                format!("{} draws no random numbers: it has none of the axes --walk to --first-shot", self.method);
+                format!("{} draws no random numbers: it has none of the axes --sequence to --first-shot", entry.name);
             return Err(Failure::usage(what).with_help("leave them out, or choose a method of Monte Carlo"));
         }
+        self.refuse_settings_but(entry.uses)?;
         let default = deterministic::Settings::default();
         Ok(deterministic::Settings {
-            way: self.factors.to_owned(),
+            way: self.factors.map_or(default.way, str::to_owned),
             factors: form_factors::Settings { seed, ..default.factors },
             ambient: self.ambient,
-            unshot: self.unshot,
-            link_power: self.link_power,
+            unshot: self.unshot.unwrap_or(default.unshot),
+            link_power: self.link_power.unwrap_or(default.link_power),
             ..default
         })
+    }
+
+    /// An option that would be ignored is an error.
+    fn refuse_settings_but(&self, used: &[&str]) -> Result<(), Failure> {
+        let asked = [
+            ("factors", self.factors.is_some()),
+            ("unshot", self.unshot.is_some()),
+            ("ambient", self.ambient),
+            ("link-power", self.link_power.is_some()),
+        ];
+        match asked.into_iter().find(|(name, is_asked)| *is_asked && !used.contains(name)) {
+            Some((name, _)) => Err(Failure::usage(format!("{} has no use for --{name}", self.method))
+                .with_help("leave it out; 'isolux solve --help' says whose it is")),
+            None => Ok(()),
+        }
     }
 
     fn moves_an_axis(&self) -> bool {
@@ -110,7 +125,7 @@ impl MethodArguments {
     /// The method of Monte Carlo with the axes that were asked for.
     ///
     /// # Errors
-    /// A failure for a name that is in no table, and for a combination without meaning.
+    /// A failure for a name that is in no table, for a combination without meaning, and for a setting of other methods.
     pub fn method(&self) -> Result<Method, Failure> {
         let names = METHODS.iter().map(|method| method.name).chain(DETERMINISTIC.iter().map(|entry| entry.name));
         let named = Method::named(&self.method).map_err(|_| Error::unknown_name("method", &self.method, names))?;
@@ -129,6 +144,7 @@ impl MethodArguments {
         let natural = if moved.contains(&true) { method.natural_address() } else { named.address };
         method.address = self.address.unwrap_or(natural);
         method.check()?;
+        self.refuse_settings_but(&[])?;
         Ok(method)
     }
 }
@@ -186,9 +202,25 @@ mod tests {
         let refused = |text: &str| arguments(text).method().unwrap_err().to_string();
         assert!(refused("solve --walk continuous --lines bundle").contains("nearest is --walk discrete"));
         assert!(refused("solve --method jacobi-gathe").contains("did you mean 'jacobi-gather'"));
-        let direct = arguments("solve --method direct --order wdrs");
-        assert!(direct.is_deterministic() && direct.deterministic(1).is_err());
-        let hemicube = arguments("solve --method direct --factors hemicube --unshot 0.01").deterministic(7).unwrap();
-        assert_eq!((hemicube.way.as_str(), hemicube.unshot, hemicube.factors.seed), ("hemicube", 0.01, 7));
+        assert!(refused("solve --first-shot same").contains("no first shot"));
+    }
+
+    #[test]
+    fn settings_that_would_be_ignored_are_refused() {
+        let refused = |text: &str| {
+            let arguments = arguments(text);
+            match arguments.deterministic() {
+                Some(entry) => arguments.deterministic_settings(entry, 1).unwrap_err().to_string(),
+                None => arguments.method().unwrap_err().to_string(),
+            }
+        };
+        assert!(refused("solve --method direct --order wdrs").contains("no random numbers"));
+        assert!(refused("solve --method direct --unshot 0.1").contains("no use for --unshot"));
+        assert!(refused("solve --method southwell --factors contour").contains("no use for --factors"));
+        assert!(refused("solve --method gauss-seidel --ambient").contains("no use for --ambient"));
+        assert!(refused("solve --method shirley --link-power 0.1").contains("no use for --link-power"));
+        let hemicube = arguments("solve --method gauss-seidel --factors hemicube --unshot 0.01");
+        let settings = hemicube.deterministic_settings(hemicube.deterministic().unwrap(), 7).unwrap();
+        assert_eq!((settings.way.as_str(), settings.unshot, settings.factors.seed), ("hemicube", 0.01, 7));
     }
 }

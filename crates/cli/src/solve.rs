@@ -80,14 +80,14 @@ pub struct Solve {
     #[command(flatten)]
     threads: ThreadArguments,
 
-    /// Independent solutions that the error is estimated from, at least 8
-    #[arg(long, value_name = "R", default_value_t = Settings::default().replicates)]
-    replicates: u32,
+    /// Independent solutions that the error is estimated from, at least 8 [default: 16]
+    #[arg(long, value_name = "R")]
+    replicates: Option<u32>,
 
     /// From where on an element reflected light leaves: where-landed hardly leaks under walls and behind
-    /// frames, whole-element is the radiosity system to the letter
-    #[arg(long, default_value = Leaving::default().name(), value_parser = parse_leaving)]
-    leaving: Leaving,
+    /// frames, whole-element is the radiosity system to the letter [default: where-landed]
+    #[arg(long, value_parser = parse_leaving)]
+    leaving: Option<Leaving>,
 
     #[command(flatten)]
     method: MethodArguments,
@@ -124,14 +124,14 @@ fn parse_objects(text: &str) -> Result<usize, String> {
 /// A method with what it is told.
 enum Chosen {
     MonteCarlo(Settings),
-    Deterministic(String, deterministic::Settings),
+    Deterministic(&'static deterministic::Entry, deterministic::Settings),
 }
 
 impl Chosen {
     fn solver(&self, problem: &Problem) -> Result<Box<dyn Solver>, Failure> {
         match self {
             Chosen::MonteCarlo(settings) => Ok(Box::new(MonteCarlo::new(problem, *settings)?)),
-            Chosen::Deterministic(name, settings) => Ok(deterministic::solver(name, problem, settings)?),
+            Chosen::Deterministic(entry, settings) => Ok((entry.make)(problem, settings)?),
         }
     }
 }
@@ -179,21 +179,24 @@ impl Solve {
         match (self.elements, self.max_edge) {
             (Some(elements), _) => Resolution::Elements(elements),
             (None, Some(edge)) => Resolution::MaxEdge(edge),
-            (None, None) if self.method.is_deterministic() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
+            (None, None) if self.method.deterministic().is_some() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
             (None, None) => Resolution::default(),
         }
     }
 
     /// The method that was asked for, before there is anything to solve.
     fn chosen(&self) -> Result<Chosen, Failure> {
-        if !self.method.is_deterministic() {
-            return Ok(Chosen::MonteCarlo(self.settings()?));
+        let Some(entry) = self.method.deterministic() else { return Ok(Chosen::MonteCarlo(self.settings()?)) };
+        let asked = [
+            ("rays", self.rays.is_some()),
+            ("replicates", self.replicates.is_some()),
+            ("leaving", self.leaving.is_some()),
+        ];
+        if let Some((name, _)) = asked.into_iter().find(|(_, is_asked)| *is_asked) {
+            let what = format!("{} draws no random numbers: it has no --{name}", entry.name);
+            return Err(Failure::usage(what).with_help("leave it out; --time limits every method"));
         }
-        if self.rays.is_some() {
-            let what = format!("{} draws no random numbers: it has no --rays", self.method.name());
-            return Err(Failure::usage(what).with_help("--time limits it, and --unshot says how far it goes"));
-        }
-        Ok(Chosen::Deterministic(self.method.name().to_owned(), self.method.deterministic(self.seed)?))
+        Ok(Chosen::Deterministic(entry, self.method.deterministic_settings(entry, self.seed)?))
     }
 
     fn settings(&self) -> Result<Settings, Failure> {
@@ -202,12 +205,20 @@ impl Solve {
             (None, Some(_)) => Budget::Endless,
             (None, None) => Budget::Heuristic,
         };
+        let method = self.method.method()?;
+        if self.leaving.is_some() && !method.has_leaving() {
+            let what = format!("{} has no use for --leaving", method.name());
+            return Err(
+                Failure::usage(what).with_help("it is for light that is pooled on elements and shot along local lines")
+            );
+        }
+        let default = Settings::default();
         Ok(Settings {
-            method: self.method.method()?,
+            method,
             seed: self.seed,
             budget,
-            replicates: self.replicates,
-            leaving: self.leaving,
+            replicates: self.replicates.unwrap_or(default.replicates),
+            leaving: self.leaving.unwrap_or(default.leaving),
         })
     }
 

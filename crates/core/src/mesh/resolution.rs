@@ -132,3 +132,61 @@ fn economical(corners: [Vec3; 3], edge: f64) -> u16 {
 fn divisions(wanted: f64) -> u16 {
     wanted.ceil().clamp(1.0, MOST_DIVISIONS) as u16
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+    use crate::mesh::ElementMesh;
+    use crate::scene::builtin::shapes::Builder;
+    use crate::scene::{Material, Shape};
+
+    /// Needles and well-shaped triangles of many sizes; with `flat` also flat ones, whose edges are all long.
+    fn scene(flat: bool) -> Scene {
+        let mut builder = Builder::new("needles");
+        let material = builder.material(Material::diffuse("", Rgb::grey(0.5)));
+        builder.object("needles", material);
+        let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+        for (length, width) in [(9.0, 0.01), (9.0, 0.3), (9.0, 2.0), (1.0, 1.0), (0.02, 0.01), (3.0, 0.05)] {
+            builder.polygon(&[corner(0.0, 0.0), corner(length, 0.0), corner(length, width)]);
+            if flat {
+                builder.polygon(&[corner(length, 0.0), corner(0.5 * length, width), corner(0.0, 0.0)]);
+            }
+        }
+        builder.finish()
+    }
+
+    /// Longest edges [m] of all elements.
+    fn edges(scene: &Scene, resolution: Resolution) -> Vec<f64> {
+        let mesh = ElementMesh::new(scene, resolution).unwrap();
+        let of_element = |e| {
+            let [a, b, c] = scene.corners(mesh.triangle(e));
+            longest_edge(mesh.corners(e).map(|uv| a + uv.x * (b - a) + uv.y * (c - a)))
+        };
+        mesh.elements().map(of_element).collect()
+    }
+
+    #[test]
+    fn no_element_has_a_longer_edge_than_was_asked_for() {
+        let scene = scene(true);
+        assert_eq!(scene.shape, Shape::Triangles);
+        for edge in [20.0, 2.0, 0.5, 0.1, 0.03] {
+            let longest = edges(&scene, Resolution::MaxEdge(edge)).into_iter().fold(0.0, f64::max);
+            assert!(longest <= f64::from(edge) * 1.00001, "{longest} is more than {edge}");
+        }
+    }
+
+    #[test]
+    fn targets_are_met_from_below_and_needles_do_not_stay_long() {
+        let scene = scene(false);
+        for target in [200, 2000, 20_000] {
+            let edges = edges(&scene, Resolution::Elements(target));
+            let count = edges.len() as u64;
+            assert!(count <= target && count > target * 8 / 10, "{count} for {target}");
+            // Cut regularly, the thinnest needle would have elements of sqrt(9 m times the others' edge).
+            let mean = (edges.iter().map(|edge| edge * edge).sum::<f64>() / count as f64).sqrt();
+            let longest = edges.iter().copied().fold(0.0, f64::max);
+            assert!(longest < 5.0 * mean, "{longest} {mean} for {target}");
+        }
+    }
+}

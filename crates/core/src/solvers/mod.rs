@@ -4,7 +4,6 @@ mod allocation;
 pub mod budget;
 pub mod deterministic;
 mod gathering;
-mod line_set;
 pub mod monte_carlo;
 mod replicates;
 mod shooting;

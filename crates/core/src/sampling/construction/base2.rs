@@ -84,7 +84,8 @@ pub mod tests {
     use super::*;
     use crate::sampling::construction::quality::is_net;
 
-    /// Asserts that every block of `2^m` points is a (t, m, s)-net, for the t of `known`, from one dimension on.
+    /// Asserts that every block of `2^m` points is a (t, m, s)-net, for the t of `known`, from one dimension on, and that no point
+    /// comes twice.
     pub fn assert_sequence_of_nets(matrices: &Matrices, known: &[u32]) {
         for (s, &t) in (1..).zip(known) {
             for m in t..=t + 5 {
@@ -94,11 +95,14 @@ pub mod tests {
                 }
             }
         }
+        let leading = |index, d, k| u64::from(matrices.fraction(index, d)) >> (32 - k);
+        assert!(!is_net(2, 0, 4, 3, leading), "there is no (0, 3)-sequence in base 2");
+        assert_points_differ(matrices);
     }
 
     /// Asserts that no two of the first 2^40 points are the same in single precision: the columns that the bits of the
     /// index add, 24 rows of four dimensions, are linearly independent.
-    pub fn assert_points_differ(matrices: &Matrices) {
+    fn assert_points_differ(matrices: &Matrices) {
         let mut basis: Vec<u128> = Vec::new();
         for k in 0..40 {
             let column = (0..4).fold(0, |x, d| x << 24 | u128::from(matrices.columns[d][k] >> 8));

@@ -64,6 +64,8 @@ pub struct Entry {
     /// What it does, two lines for people.
     pub what: [&'static str; 2],
     pub source: &'static str,
+    /// The settings that concern it, as the command line calls them.
+    pub uses: &'static [&'static str],
     pub make: Make,
 }
 
@@ -76,42 +78,49 @@ pub const DETERMINISTIC: &[Entry] = &[
         name: "jacobi-gather",
         what: ["every element gathers what all others sent in the iteration before;", "matrix of form factors"],
         source: "Goral, Torrance, Greenberg & Battaile 1984",
+        uses: &["factors", "unshot"],
         make: |problem, settings| Ok(Box::new(jacobi::solver(problem, settings, Form::Gather)?)),
     },
     Entry {
         name: "jacobi-shoot",
         what: ["every element shoots all its power, again and again;", "matrix of form factors"],
         source: "Neumann et al. 1995, without the random numbers",
+        uses: &["factors", "unshot"],
         make: |problem, settings| Ok(Box::new(jacobi::solver(problem, settings, Form::Shoot)?)),
     },
     Entry {
         name: "jacobi-incremental",
         what: ["every element shoots what it has not shot yet;", "matrix of form factors"],
         source: "Shirley 1991, without the random numbers",
+        uses: &["factors", "unshot"],
         make: |problem, settings| Ok(Box::new(jacobi::solver(problem, settings, Form::Incremental)?)),
     },
     Entry {
         name: "gauss-seidel",
         what: ["one element after the other gathers, from the newest radiosities;", "matrix of form factors"],
         source: "Cohen & Greenberg 1985",
+        uses: &["factors", "unshot"],
         make: |problem, settings| Ok(Box::new(gauss_seidel::solver(problem, settings)?)),
     },
     Entry {
         name: "southwell",
         what: ["progressive refinement: the element with most unshot power shoots next;", "one hemicube at a time"],
         source: "Cohen, Chen, Wallace & Greenberg 1988; Gortler, Cohen & Slusallek 1994",
+        uses: &["unshot", "ambient"],
         make: |problem, settings| Ok(Box::new(southwell::Southwell::new(problem, settings)?)),
     },
     Entry {
         name: "direct",
         what: ["the dense system by LU decomposition, the reference for small scenes;", "matrix of form factors"],
         source: "Goral, Torrance, Greenberg & Battaile 1984",
+        uses: &["factors"],
         make: |problem, settings| Ok(Box::new(direct::solver(problem, settings)?)),
     },
     Entry {
         name: "hierarchical",
         what: ["links between clusters of elements, as fine as the power they carry asks for;", "without a matrix"],
         source: "Hanrahan, Salzman & Aupperle 1991",
+        uses: &["unshot", "link-power"],
         make: |problem, settings| Ok(Box::new(hierarchical::Hierarchical::new(problem, settings)?)),
     },
 ];

@@ -27,7 +27,7 @@ pub struct Landed {
     pub reflected: f64,
 }
 
-/// Flux on every element, 80 bytes each (92 in a scene with lights without extent).
+/// Flux on every element, 92 bytes each (104 in a scene with lights without extent).
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Light {
     lamps: Vec<Rgb>,

@@ -1,7 +1,7 @@
 //! Which combinations of the axes have a meaning.
 
 use super::Method;
-use super::axes::{Direction, Estimator, Lines, Order, Survival, Walk};
+use super::axes::{Direction, Estimator, FirstShot, Lines, Order, Survival, Walk};
 use crate::Error;
 use crate::sampling::address::Address;
 use crate::scene::Scene;
@@ -36,6 +36,12 @@ impl Method {
             return refuse(
                 "the lines of a bundle have no order in which light could go from one to the next",
                 "--order breadth-first, or --lines global",
+            );
+        }
+        if local && self.first_shot == FirstShot::Same {
+            return refuse(
+                "local lines shoot emitted light by themselves, so there is no first shot",
+                "--lines global",
             );
         }
         if self.direction == Direction::Gathering && self.pools() {

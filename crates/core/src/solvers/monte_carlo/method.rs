@@ -177,6 +177,11 @@ impl Method {
         self.order != Order::DepthFirst || self.lines != Lines::Local
     }
 
+    /// Whether [`crate::transport::Leaving`] means anything to it: a walk goes on as its kind says, and global lines cross all of an element.
+    pub fn has_leaving(&self) -> bool {
+        self.pools() && self.lines == Lines::Local
+    }
+
     /// What is needed to name it again: parameter and value of each axis that matters to it.
     pub fn parameters(&self) -> Vec<(String, String)> {
         let mut parameters = vec![

@@ -142,11 +142,11 @@ impl MonteCarlo {
             Budget::Rays(rays) => ("rays", rays.to_string()),
             Budget::Endless => ("rounds", "doubling".to_owned()),
         };
-        let mut parameters = vec![
-            (name.to_owned(), value),
-            ("replicates".to_owned(), self.replicates_in_round.to_string()),
-            ("leaving".to_owned(), self.settings.leaving.name().to_owned()),
-        ];
+        let mut parameters =
+            vec![(name.to_owned(), value), ("replicates".to_owned(), self.replicates_in_round.to_string())];
+        if self.settings.method.has_leaving() {
+            parameters.push(("leaving".to_owned(), self.settings.leaving.name().to_owned()));
+        }
         parameters.extend(self.settings.method.parameters());
         Provenance {
             scene: problem.scene.name.clone(),
@@ -212,11 +212,17 @@ impl Solver for MonteCarlo {
 
 /// Most rays of a complete solution.
 fn most_rays_each(problem: &Problem, settings: &Settings) -> u64 {
-    if settings.method.pools() && settings.leaving == Leaving::WhereLanded {
+    if settings.method.has_leaving() && settings.leaving == Leaving::WhereLanded {
         (RAYS_PER_ELEMENT * problem.mesh.len() as u64).clamp(1000, MOST_RAYS_EACH)
     } else {
         MOST_RAYS_EACH
     }
+}
+
+/// Most rays that a complete solution of `planned` rays takes before it gives up: ten times as many, and 200,000. A room of mean
+/// reflectivity 0.9999 stays below; where nothing absorbs light it would go on for ever. What is left is the balance's unshot light.
+fn patience(planned: u64) -> u64 {
+    planned.saturating_mul(10).saturating_add(200_000)
 }
 
 /// A sum kept in double precision, as a colour.

@@ -21,6 +21,11 @@ pub fn luminous(problem: &Problem) -> impl Iterator<Item = (u32, f64)> {
     (0..count(problem) as u32).map(|i| (i, flux(problem, i).luminance_f64()))
 }
 
+/// Luminous flux [lm] of all emitting surfaces.
+pub fn of_surfaces(problem: &Problem) -> f64 {
+    problem.mesh.elements().map(|e| problem.mesh.emitted_flux(e).luminance_f64()).sum()
+}
+
 /// Luminous flux [lm] of all sources.
 pub fn total(problem: &Problem) -> f64 {
     luminous(problem).map(|(_, flux)| flux).sum()

@@ -8,11 +8,11 @@
 //!
 //! The new rays of an element carry what makes the colour of all its rays that of its power. Unbiased but for the address: points of
 //! one sequence avoid each other, and how many an element shoots depends on where earlier ones went (with `--sequence random` there
-//! is no such bias). Memory: 44 bytes an element. Cost: one ray a sample.
+//! is no such bias). Memory: 20 bytes a source beside its light ([`Light`]). Cost: one ray a sample.
 
 use super::complete::CompleteSolution;
 use super::light::{Light, Origin};
-use super::{Experience, Method, Settings, sources};
+use super::{Experience, Method, Settings, patience, sources};
 use crate::Problem;
 use crate::math::Rgb;
 use crate::math::hash::{derive, unit_f64};
@@ -25,14 +25,13 @@ use std::ops::Range;
 
 /// How often the flux of a ray is halved in a complete solution.
 const REFINEMENTS: i32 = 3;
-/// It gives up after this many times the planned rays, and so many more: where nothing absorbs light it would go on for ever.
-const PATIENCE: (u64, u64) = (10, 200_000);
 
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Wdrs {
     method: Method,
     seed: u64,
     rays_done: u64,
+    /// Rays after which it gives up.
     patience: u64,
     step: u64,
     /// Luminous flux [lm] of every ray.
@@ -145,7 +144,7 @@ impl CompleteSolution for Wdrs {
         self.light.clear();
         self.lost = [0.0; 2];
         (self.absorbed, self.reflected) = (0.0, 0.0);
-        self.patience = rays.saturating_mul(PATIENCE.0).saturating_add(PATIENCE.1);
+        self.patience = patience(rays);
         self.emitted = sources::total(problem);
         let power = self.emitted * (1.0 + experience.reflected_share);
         self.start(problem, power / rays as f64, REFINEMENTS);
@@ -180,9 +179,9 @@ impl CompleteSolution for Wdrs {
         self.light.land(&part);
         self.light.mark(&part);
         if self.pieces_absorbed == shooting::pieces(self.allocation.rays()) {
-            let sent: Vec<(u32, Rgb)> =
-                self.allocation.counts().map(|(i, n)| (i, self.ray(problem, i, n) * n as f32)).collect();
-            for ((i, n), (_, flux)) in self.allocation.counts().zip(sent) {
+            let sent = |(i, n)| (i, n, self.ray(problem, i, n) * n as f32);
+            let sent: Vec<(u32, u32, Rgb)> = self.allocation.counts().map(sent).collect();
+            for (i, n, flux) in sent {
                 self.sent[i as usize] += flux;
                 self.shot[i as usize] += n;
                 self.counters.advance(i, n);

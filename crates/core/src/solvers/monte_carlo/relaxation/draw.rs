@@ -1,7 +1,7 @@
 //! The lines of a step: from the elements, or across the whole scene.
 
+use super::line_set::LineSet;
 use crate::solvers::allocation::Allocation;
-use crate::solvers::line_set::LineSet;
 use crate::solvers::shooting;
 
 /// The lines of a step.

@@ -6,6 +6,7 @@
 
 mod books;
 mod draw;
+mod line_set;
 mod merging;
 mod multipath;
 mod plan;
@@ -13,6 +14,7 @@ mod stage;
 mod sweeps;
 
 use self::draw::Draw;
+use self::line_set::LineSet;
 use self::merging::Merging;
 use self::plan::{AVERAGED, Plan};
 use self::stage::Stage;
@@ -28,7 +30,6 @@ use crate::sampling::Sequence;
 use crate::sampling::address::Counters;
 use crate::solution::Balance;
 use crate::solvers::allocation::Allocation;
-use crate::solvers::line_set::LineSet;
 use crate::solvers::{Part, gathering, shooting};
 use crate::transport::{Footprint, Leaving};
 use std::ops::Range;
@@ -71,7 +72,7 @@ impl Relaxation {
     pub fn new(problem: &Problem, settings: &Settings) -> Relaxation {
         let method = settings.method;
         // A global line crosses all of an element: its light leaves from all of it.
-        let leaving = if method.lines == Lines::Local { settings.leaving } else { Leaving::WholeElement };
+        let leaving = if method.has_leaving() { settings.leaving } else { Leaving::WholeElement };
         Relaxation {
             method,
             seed: 0,
@@ -150,7 +151,7 @@ impl Relaxation {
         while stage != Stage::Done {
             self.shot = self.sources(problem, stage).map(|(_, flux)| flux).sum();
             if stage == Stage::Multipath && self.method.first_shot == FirstShot::Same {
-                self.shot += problem.mesh.elements().map(|e| problem.mesh.emitted_flux(e).luminance_f64()).sum::<f64>();
+                self.shot += sources::of_surfaces(problem);
             }
             let rays = self.rays_of_step(stage, experience);
             let u = unit_f64(derive(self.seed, self.step));
@@ -226,8 +227,7 @@ impl Relaxation {
                 self.reflected_rays += rays;
                 // On average all that surfaces emit has left; the rest of it is adrift.
                 if self.method.first_shot == FirstShot::Same {
-                    self.adrift +=
-                        problem.mesh.elements().map(|e| problem.mesh.emitted_flux(e).luminance_f64()).sum::<f64>();
+                    self.adrift += sources::of_surfaces(problem);
                 }
                 self.light.find_active();
                 self.balance.escaped += self.lost[0];
@@ -239,9 +239,7 @@ impl Relaxation {
                 self.light.spend_unshot();
                 self.reflect(problem, Origin::Reflection);
             }
-            Stage::WarmUp => {
-                self.iterate(problem, 1.0);
-            }
+            Stage::WarmUp => self.iterate(problem, 1.0),
             Stage::Regular if self.method.order == Order::StochasticRay => {
                 self.iterate(problem, 1.0 / self.iteration as f32);
             }

@@ -5,17 +5,14 @@
 //! the rest of all rays gathers.
 
 use super::stage::Stage;
-use crate::solvers::monte_carlo::Experience;
 use crate::solvers::monte_carlo::axes::Order;
+use crate::solvers::monte_carlo::{Experience, patience};
 
 /// Share of the rays that shoot where the others gather.
 const SHOOTING_SHARE: f64 = 0.6;
 /// Incremental shooting stops when less than this share of the emitted power is unshot, and warming up when as little of it can
 /// be missing.
 const UNSHOT_LIMIT: f64 = 1e-6;
-/// Incremental shooting gives up after this many times the planned rays, and so many more. A room of mean reflectivity 0.9999
-/// stays below; where nothing absorbs light it would go on for ever. What is left is the balance's unshot light.
-const PATIENCE: (u64, u64) = (10, 200_000);
 /// Share of the rays for reflected light of stochastic ray radiosity that warm up.
 const WARM_UP_SHARE: f64 = 0.1;
 /// Iterations of stochastic ray radiosity that are averaged.
@@ -55,8 +52,7 @@ impl Plan {
                 };
                 let expected = if self.order == Order::DepthFirst { share } else { self.experience.reflected_share };
                 let rays = (incremental * share / expected.max(1e-3)).ceil().max(1.0) as u64;
-                let patience = self.rays.saturating_mul(PATIENCE.0).saturating_add(PATIENCE.1);
-                rays.min(patience.saturating_sub(done))
+                rays.min(patience(self.rays).saturating_sub(done))
             }
             Stage::WarmUp => (WARM_UP_SHARE * reflected / f64::from(self.warm_up())).ceil() as u64,
             Stage::Regular if jacobi => (shooting as u64).saturating_sub(done),

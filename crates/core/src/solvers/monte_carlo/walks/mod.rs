@@ -5,7 +5,8 @@
 //! survives, *absorption* `w / (1 - sigma_k)` if it ends there. *Gathering.* `n_i` particles of weight 1 start on every element i; a
 //! visit of k scores `Be_k / n_i` times the weight on the irradiance of i, by the same estimators. Either goes on with weight
 //! `rho_k / sigma_k`; `sigma_k` is the luminance of the reflectivity, kept off 0 and 1 where only some visits score, so
-//! that every element can be measured. All are unbiased.
+//! that every element can be measured. All are unbiased with independent numbers; where the counters of elements run on, the points
+//! of a low-discrepancy sequence avoid each other, and the bias falls with the number of particles.
 //!
 //! A *discrete* walk goes on from a new point of the element, a *continuous* one (Pattanaik & Mudur 1992) from the point hit. With
 //! the address `per-particle` line k takes the numbers `5k` to `5k + 4` of the particle's point; with `per-element` every element owns a stream

@@ -3,11 +3,11 @@
 //! Element i is crossed `N_i` times on average, in proportion to its area; with every crossing it sends off `D_i / N_i` of its flux
 //! `D_i` (Sbert 1993). Unbiased: it sends `D_i` on average, in a single step more or less of it.
 
-use super::{Landing, Part};
 use crate::Problem;
 use crate::math::Rgb;
 use crate::sampling::Sequence;
 use crate::solvers::monte_carlo::axes::Lines;
+use crate::solvers::{Landing, Part};
 use crate::transport::bundle::Bundle;
 use crate::transport::global_line;
 use crate::transport::{Arrival, Span};
