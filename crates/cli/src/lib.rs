@@ -19,6 +19,7 @@ mod render;
 mod report;
 mod scene;
 mod solve;
+mod study;
 mod summary;
 mod terminal;
 
@@ -59,6 +60,7 @@ enum Command {
     Compare(compare::Compare),
     Scene(scene::SceneCommand),
     Factors(factors::Factors),
+    Study(study::StudyCommand),
     List(list::List),
 }
 
@@ -84,6 +86,7 @@ fn execute(command: Option<Command>) -> Result<u8, Failure> {
         Some(Command::Compare(compare)) => compare.run(),
         Some(Command::Scene(scene)) => scene.run(),
         Some(Command::Factors(factors)) => factors.run(),
+        Some(Command::Study(study)) => study.run(),
         Some(Command::List(list)) => list.run(),
     }
 }

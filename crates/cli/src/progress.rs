@@ -63,6 +63,22 @@ impl Display {
         }
     }
 
+    /// Shows how far work has come that is no solver's; `what` is asked for only if it is shown.
+    pub fn work(&mut self, share: f64, next_line: &mut Duration, start: Instant, what: impl Fn() -> String) {
+        match self {
+            Display::Bar(bar) => {
+                bar.set_style(style("{spinner:.cyan} {bar:20.cyan/dim} {msg}"));
+                bar.set_position((share * STEPS as f64) as u64);
+                bar.set_message(what());
+            }
+            Display::Lines if start.elapsed() >= *next_line => {
+                terminal::say(&format!("{:3.0} % · {}", 100.0 * share, what()));
+                *next_line = start.elapsed() + LINE_EVERY;
+            }
+            _ => {}
+        }
+    }
+
     /// Says something between the pictures of the bar.
     pub fn say(&self, what: &str) {
         match self {

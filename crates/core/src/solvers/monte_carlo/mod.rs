@@ -61,13 +61,14 @@ pub struct MonteCarlo {
 
 impl MonteCarlo {
     /// # Errors
-    /// [`Error::Meaningless`] for a method that has no meaning, here or at all; [`Error::Parameter`] for fewer than 8 replicates or fewer rays than those.
+    /// [`Error::Meaningless`] for a method that has no meaning, here or at all; [`Error::Parameter`] for 0 or 2 to 7 replicates, or fewer rays than replicates.
     pub fn new(problem: &Problem, settings: Settings) -> Result<MonteCarlo, Error> {
         settings.method.check()?;
         settings.method.check_scene(&problem.scene)?;
         let parameter = |name, value: u64, allowed| Err(Error::Parameter { name, value: value.to_string(), allowed });
-        if settings.replicates < 8 {
-            return parameter("replicates", settings.replicates.into(), "at least 8 are needed for an error bar");
+        if settings.replicates != 1 && settings.replicates < 8 {
+            let allowed = "at least 8 are needed for an error bar, or 1 for none";
+            return parameter("replicates", settings.replicates.into(), allowed);
         }
         let rays_in_all = match settings.budget {
             Budget::Heuristic => Some(budget::rays(&problem.mesh)),

@@ -8,7 +8,8 @@ pub struct Settings {
     pub method: Method,
     pub seed: u64,
     pub budget: Budget,
-    /// Independent complete solutions in a round, from 8; there are more if there are very many rays for each element.
+    /// Independent complete solutions in a round, from 8, or 1 without an error bar; there are more if there are very many rays for
+    /// each element.
     pub replicates: u32,
     /// From where pooled light leaves an element.
     pub leaving: Leaving,

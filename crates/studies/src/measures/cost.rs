@@ -1,0 +1,66 @@
+//! `cost`: seconds and rays to a fixed accuracy against the number of elements.
+//!
+//! `at` is the number of elements. A stochastic method runs with 32 rays an element and states its error e; since that falls like
+//! `1 / sqrt(rays)`, an error of 5 % takes `(e / 5 %)²` times as many rays and seconds. A deterministic one runs until a
+//! thousandth of the light is unshot; its error is that of its form factors, and so that this does not grow where elements get
+//! smaller, hemicubes have four pixels to each element of the scene. Reading and cutting the scene is not counted.
+
+use super::{Measure, row};
+use crate::Error;
+use crate::bench::{Bench, Watch, single, solve};
+use crate::results::Row;
+use crate::run::Point;
+use crate::spec::Spec;
+use isolux_core::form_factors;
+use isolux_core::solvers::Solver;
+use isolux_core::solvers::deterministic::{self, DETERMINISTIC};
+use isolux_core::solvers::monte_carlo::{MonteCarlo, Settings};
+use std::time::Instant;
+
+const ACCURACY: f64 = 0.05;
+const RAYS_PER_ELEMENT: u64 = 32;
+/// Complete solutions from which a method knows its error.
+const REPLICATES: u32 = 16;
+
+pub struct Cost;
+
+/// Hemicubes of `(2 sqrt(n))²` pixels on their top for n elements.
+fn settings_for(elements: u64) -> deterministic::Settings {
+    let resolution = 2 * (elements as f64).sqrt().round() as u16;
+    let default = deterministic::Settings::default();
+    let factors = form_factors::Settings { resolution, ..default.factors };
+    deterministic::Settings { factors, unshot: 1e-3, ..default }
+}
+
+impl Measure for Cost {
+    fn columns(&self) -> &'static [&'static str] {
+        &["elements", "rays", "seconds"]
+    }
+
+    fn measure(
+        &mut self,
+        bench: &mut Bench,
+        spec: &Spec,
+        point: &Point,
+        watch: &mut Watch,
+    ) -> Result<Option<Vec<Row>>, Error> {
+        let (scene, series) = (&spec.scenes[point.scene], &spec.series[point.series]);
+        let problem = bench.problem(scene, point.at as u64)?;
+        let elements = problem.mesh.len() as u64;
+        let name = series.axis("method").unwrap_or_default();
+        let entry = DETERMINISTIC.iter().find(|entry| entry.name == name);
+        let mut solver: Box<dyn Solver> = match entry {
+            Some(entry) => (entry.make)(&problem, &settings_for(elements))?,
+            None => {
+                let settings = single(series.method()?, RAYS_PER_ELEMENT * elements, point.seed);
+                Box::new(MonteCarlo::new(&problem, Settings { replicates: REPLICATES, ..settings })?)
+            }
+        };
+        let start = Instant::now();
+        let Some(solution) = solve(solver.as_mut(), &problem, "", watch) else { return Ok(None) };
+        let seconds = start.elapsed().as_secs_f64();
+        let times = if entry.is_some() { 1.0 } else { (solution.rms_error(&problem) / ACCURACY).powi(2) };
+        let values = vec![elements as f64, solution.work.rays as f64 * times, seconds * times];
+        Ok(Some(vec![row(spec, point, point.at, values)]))
+    }
+}

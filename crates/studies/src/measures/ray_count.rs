@@ -1,0 +1,56 @@
+//! `ray-count`: does the recommended number of rays give the error it promises?
+//!
+//! `at` is a multiple of the recommended number `N = 9 max_i rho_i A_T / A_i` ([`isolux_core::solvers::budget`]). It promises that
+//! three standard deviations of the reflected radiosity of an element are about the mean radiosity. Measured is that
+//! ratio for every element, with the deviation of one complete solution of N rays from the spread of 32: its median, its 90th
+//! percentile and its maximum over the elements; `kept`, the share of elements for which it is at most one; and `error`, the
+//! area-weighted RMS error of the whole solution.
+
+use super::{Measure, row};
+use crate::Error;
+use crate::bench::{Bench, Watch, single, solve};
+use crate::results::Row;
+use crate::run::Point;
+use crate::spec::Spec;
+use isolux_core::solvers::budget;
+use isolux_core::solvers::monte_carlo::{MonteCarlo, Settings};
+
+/// Complete solutions whose spread is measured.
+const RUNS: u32 = 32;
+
+pub struct RayCount;
+
+impl Measure for RayCount {
+    fn columns(&self) -> &'static [&'static str] {
+        &["rays", "median", "ninety", "worst", "kept", "error"]
+    }
+
+    fn measure(
+        &mut self,
+        bench: &mut Bench,
+        spec: &Spec,
+        point: &Point,
+        watch: &mut Watch,
+    ) -> Result<Option<Vec<Row>>, Error> {
+        let (scene, series) = (&spec.scenes[point.scene], &spec.series[point.series]);
+        let problem = bench.problem(scene, scene.elements)?;
+        let left_out = if series.axis("worst-tenth") == Some("left-out") { 0.1 } else { 0.0 };
+        let rays = (point.at * budget::heuristic(&problem.mesh, left_out)).ceil();
+        let settings = single(series.method()?, rays as u64 * u64::from(RUNS), point.seed);
+        let settings = Settings { replicates: RUNS, ..settings };
+        let Some(solution) = solve(&mut MonteCarlo::new(&problem, settings)?, &problem, "", watch) else {
+            return Ok(None);
+        };
+        let mesh = &problem.mesh;
+        let weighted = |e| f64::from(mesh.area(e)) * solution.radiosity(&problem, e).luminance_f64();
+        let mean = mesh.elements().map(weighted).sum::<f64>() / mesh.total_area();
+        let one = f64::from(RUNS).sqrt();
+        let deviation = |e: u32| (mesh.reflectivity(e) * solution.std_error[e as usize]).luminance_f64() * one;
+        let mut ratios: Vec<f64> = mesh.elements().map(|e| 3.0 * deviation(e) / mean).collect();
+        ratios.sort_by(f64::total_cmp);
+        let rank = |share: f64| ratios[((ratios.len() - 1) as f64 * share) as usize];
+        let kept = ratios.iter().filter(|&&ratio| ratio <= 1.0).count() as f64 / ratios.len() as f64;
+        let error = solution.rms_error(&problem) * one;
+        Ok(Some(vec![row(spec, point, point.at, vec![rays, rank(0.5), rank(0.9), rank(1.0), kept, error])]))
+    }
+}

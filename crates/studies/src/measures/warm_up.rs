@@ -1,0 +1,76 @@
+//! `warm-up`: how a single complete solution gets from the first step to the last.
+//!
+//! `at` is the number of samples of the whole solution; each row has a place of its own: the number of the step after which the
+//! solution was looked at. `missing` is how much of the reflected power is not there yet, relative to all of it (its
+//! absolute value, for noise adds some).
+
+use super::{Measure, row};
+use crate::Error;
+use crate::bench::{Bench, Watch, single};
+use crate::results::Row;
+use crate::run::Point;
+use crate::spec::Spec;
+use isolux_core::solvers::{MonteCarlo, Part, Solver};
+use isolux_core::{Problem, Solution};
+use rayon::prelude::*;
+use std::ops::ControlFlow;
+
+/// Pieces computed at once.
+const PIECES: u64 = 64;
+
+pub struct WarmUp;
+
+impl Measure for WarmUp {
+    fn columns(&self) -> &'static [&'static str] {
+        &["samples", "missing", "error"]
+    }
+
+    fn measure(
+        &mut self,
+        bench: &mut Bench,
+        spec: &Spec,
+        point: &Point,
+        watch: &mut Watch,
+    ) -> Result<Option<Vec<Row>>, Error> {
+        let (scene, method) = (&spec.scenes[point.scene], spec.series[point.series].method()?);
+        let Some(reference) = bench.reference(spec, scene, method.walk, watch)? else { return Ok(None) };
+        let problem = bench.problem(scene, scene.elements)?;
+        let mut solver = MonteCarlo::new(&problem, single(method, point.at as u64, point.seed))?;
+        let exact = reflected(&problem, |e| reference.on(e));
+        let mut rows = Vec::new();
+        while step(&mut solver, &problem, watch).is_continue() {
+            let solution = solver.solution(&problem);
+            let missing = (reflected(&problem, |e| lux(&solution, e)) / exact - 1.0).abs();
+            let error = reference.error(&problem, &solution);
+            rows.push(row(spec, point, (rows.len() + 1) as f64, vec![solution.work.rays as f64, missing, error]));
+            if solver.step().is_none() {
+                return Ok(Some(rows));
+            }
+        }
+        Ok(None)
+    }
+}
+
+fn lux(solution: &Solution, e: u32) -> f64 {
+    solution.irradiance[e as usize].luminance_f64()
+}
+
+/// Luminous flux [lm] that surfaces reflect where irradiance [lux] falls on them.
+fn reflected(problem: &Problem, irradiance: impl Fn(u32) -> f64) -> f64 {
+    let mesh = &problem.mesh;
+    mesh.elements().map(|e| f64::from(mesh.area(e)) * mesh.reflectivity(e).luminance_f64() * irradiance(e)).sum()
+}
+
+/// Does one step; breaks if `watch` does.
+fn step(solver: &mut MonteCarlo, problem: &Problem, watch: &mut Watch) -> ControlFlow<()> {
+    let Some(pieces) = solver.step() else { return ControlFlow::Continue(()) };
+    let mut first = pieces.start;
+    while first < pieces.end {
+        let last = (first + PIECES).min(pieces.end);
+        let parts: Vec<Part> = (first..last).into_par_iter().map(|piece| solver.part(problem, piece)).collect();
+        parts.into_iter().for_each(|part| solver.absorb(problem, part));
+        first = last;
+        watch("")?;
+    }
+    ControlFlow::Continue(())
+}

@@ -1,0 +1,57 @@
+//! What the axes of a series mean.
+
+use crate::Error;
+use crate::spec::Series;
+use isolux_core::sampling::address::Address;
+use isolux_core::solvers::monte_carlo::Method;
+use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Order, Survival, Walk};
+
+/// What a series may tell its measure besides.
+const OF_MEASURES: [&str; 4] = ["estimate", "rays", "factors", "worst-tenth"];
+
+impl Series {
+    /// What it says of `axis`, if anything.
+    pub fn axis(&self, axis: &str) -> Option<&str> {
+        self.axes.get(axis).map(String::as_str)
+    }
+
+    /// The method of Monte Carlo that it names: `method`, changed by the axes.
+    ///
+    /// # Errors
+    /// For a name or a combination without meaning.
+    pub fn method(&self) -> Result<Method, Error> {
+        let mut method = Method::named(self.axis("method").unwrap_or_default())?;
+        for (axis, value) in &self.axes {
+            match axis.as_str() {
+                "method" | "address" => {}
+                axis if OF_MEASURES.contains(&axis) => {}
+                "sequence" => method.sequence = value.parse()?,
+                Order::NAME => method.order = member(value)?,
+                Lines::NAME => method.lines = member(value)?,
+                Walk::NAME => method.walk = member(value)?,
+                Estimator::NAME => method.estimator = member(value)?,
+                Direction::NAME => method.direction = member(value)?,
+                Survival::NAME => method.survival = member(value)?,
+                FirstShot::NAME => method.first_shot = member(value)?,
+                _ => return Err(unknown("axis", axis)),
+            }
+        }
+        method.address = match self.axis("address") {
+            Some(name) => Address::ALL
+                .into_iter()
+                .find(|address| address.name() == name)
+                .ok_or_else(|| unknown("address", name))?,
+            None => method.natural_address(),
+        };
+        method.check()?;
+        Ok(method)
+    }
+}
+
+fn member<A: Axis>(name: &str) -> Result<A, Error> {
+    A::named(name).ok_or_else(|| unknown(A::NAME, name))
+}
+
+fn unknown(what: &str, name: &str) -> Error {
+    Error::Spec { study: String::new(), what: format!("there is no {what} '{name}'") }
+}
