@@ -2,7 +2,8 @@
 
 use isolux_core::sampling::SequenceName;
 use isolux_core::sampling::address::Address;
-use isolux_core::solvers::monte_carlo::axes::{Direction, Estimator, FirstShot, Lines, Order, Survival};
+use isolux_core::solvers::monte_carlo::axes::{Direction, Estimator, FirstShot, Lines, Survival};
+use isolux_core::solvers::monte_carlo::orders::OrderName;
 use isolux_core::solvers::monte_carlo::{METHODS, Method, Settings};
 use isolux_core::transport::Leaving;
 
@@ -58,7 +59,7 @@ pub fn methods_and_sequences() -> impl Iterator<Item = Trial> {
 /// light along one line after the other. With random numbers it is. Keller's walks end a particle's share too early.
 pub fn is_unbiased(method: &Method) -> bool {
     let runs_on = method.address == Address::PerElement;
-    let multipath = method.order == Order::DepthFirst && method.lines == Lines::Global;
+    let multipath = method.order == OrderName::DEPTH_FIRST && method.lines == Lines::Global;
     let independent = method.sequence == SequenceName::RANDOM || !(runs_on || multipath);
     independent && method.survival != Survival::Fraction
 }
@@ -72,6 +73,6 @@ pub fn with_method(method: Method, settings: Settings) -> Settings {
 /// light, and iterations are noisy: there it is the unshot light that closes it.
 pub fn leaves_nothing(method: &Method) -> bool {
     method.lines == Lines::Local
-        && !matches!(method.order, Order::StochasticRay | Order::Wdrs)
+        && ![OrderName::STOCHASTIC_RAY, OrderName::WDRS].contains(&method.order)
         && method.direction == Direction::Shooting
 }
