@@ -6,6 +6,7 @@
 
 mod breadth_first;
 mod depth_first;
+mod regular;
 mod staged;
 mod stochastic_jacobi;
 mod stochastic_ray;
@@ -40,6 +41,7 @@ pub struct Entry {
 pub const ORDERS: &[Entry] = &[
     stochastic_jacobi::ENTRY,
     stochastic_ray::ENTRY,
+    regular::ENTRY,
     breadth_first::ENTRY,
     staged::ENTRY,
     wdrs::ENTRY,
