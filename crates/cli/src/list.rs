@@ -5,6 +5,7 @@ use crate::terminal;
 use isolux_core::sampling::SEQUENCES;
 use isolux_core::scene::builtin::BUILT_IN;
 use isolux_core::solvers::deterministic::{self, DETERMINISTIC};
+use isolux_core::solvers::monte_carlo::orders::{Entry, ORDERS};
 use isolux_core::solvers::monte_carlo::{METHODS, Method, NamedMethod};
 use isolux_io::{export, import};
 
@@ -13,7 +14,7 @@ Examples:
   isolux list
   isolux list scenes";
 
-/// Show the built-in scenes, the file formats, the methods and the sample sequences
+/// Show the built-in scenes, the file formats, the methods, their orders and the sample sequences
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct List {
@@ -29,6 +30,8 @@ enum What {
     Formats,
     /// Algorithms
     Methods,
+    /// When landed light is shot again
+    Orders,
     /// Sample numbers
     Sequences,
 }
@@ -39,6 +42,7 @@ impl List {
             (What::Scenes, scenes as fn() -> String),
             (What::Formats, formats),
             (What::Methods, methods),
+            (What::Orders, orders),
             (What::Sequences, sequences),
         ];
         let wanted = tables.iter().filter(|(what, _)| self.what.is_none_or(|wanted| wanted == *what));
@@ -89,6 +93,14 @@ fn methods() -> String {
 fn point(method: &Method) -> String {
     let axes = method.parameters();
     axes.iter().map(|(axis, value)| format!("--{axis} {value}")).collect::<Vec<_>>().join(" ")
+}
+
+fn orders() -> String {
+    let mut text = "Orders, for --order: when landed light is shot again, the default first\n".to_owned();
+    for Entry { name, what, source, .. } in ORDERS {
+        text += &format!("  {name:<17}  {what} ({source})\n");
+    }
+    text
 }
 
 fn sequences() -> String {

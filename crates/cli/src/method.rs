@@ -2,11 +2,13 @@
 
 use crate::failure::Failure;
 use isolux_core::Error;
+use isolux_core::choice::{Choice, TableEntry};
 use isolux_core::form_factors::{self, WAYS};
 use isolux_core::sampling::address::Address;
-use isolux_core::sampling::{SEQUENCES, SequenceName};
+use isolux_core::sampling::{self, SequenceName};
 use isolux_core::solvers::deterministic::{self, DETERMINISTIC};
-use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Order, Survival, Walk};
+use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Survival, Walk};
+use isolux_core::solvers::monte_carlo::orders::{self, OrderName};
 use isolux_core::solvers::monte_carlo::{METHODS, Method};
 
 #[derive(Clone, Debug, clap::Args)]
@@ -17,12 +19,12 @@ pub struct MethodArguments {
     method: String,
 
     /// Sample numbers: see 'isolux list sequences'
-    #[arg(long, value_name = "NAME", value_parser = parse_sequence)]
+    #[arg(long, value_name = "NAME", value_parser = parse_choice::<sampling::Entry>)]
     sequence: Option<SequenceName>,
 
-    /// When landed light is shot again: depth-first, breadth-first, staged, stochastic-ray, wdrs or stochastic-jacobi
-    #[arg(long, value_parser = parse_axis::<Order>)]
-    order: Option<Order>,
+    /// When landed light is shot again: see 'isolux list orders'
+    #[arg(long, value_name = "NAME", value_parser = parse_choice::<orders::Entry>)]
+    order: Option<OrderName>,
 
     /// Which lines join surfaces: local, global or bundle
     #[arg(long, value_parser = parse_axis::<Lines>)]
@@ -163,8 +165,8 @@ fn parse_way(text: &str) -> Result<&'static str, String> {
     found.map(|way| way.name).ok_or_else(|| one_of(WAYS.iter().map(|way| way.name)))
 }
 
-fn parse_sequence(text: &str) -> Result<SequenceName, String> {
-    text.parse().map_err(|_| one_of(SEQUENCES.iter().map(|entry| entry.name)))
+fn parse_choice<E: TableEntry>(text: &str) -> Result<Choice<E>, String> {
+    text.parse().map_err(|_| one_of(E::TABLE.iter().map(E::name)))
 }
 
 fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
@@ -189,8 +191,8 @@ mod tests {
     #[test]
     fn an_axis_changes_the_named_method_and_brings_the_address_that_suits_it() {
         let method = arguments("solve --order depth-first --sequence halton").method().unwrap();
-        assert_eq!((method.order, method.address), (Order::DepthFirst, Address::PerElement));
-        assert_eq!(method.sequence.entry().name, "halton");
+        assert_eq!((method.order, method.address), (OrderName::DEPTH_FIRST, Address::PerElement));
+        assert_eq!(method.sequence.name(), "halton");
         let method = arguments("solve --order depth-first --walk continuous").method().unwrap();
         assert_eq!(method, Method::named("particle-tracing").unwrap());
         let method = arguments("solve --method random-walk --address per-particle").method().unwrap();

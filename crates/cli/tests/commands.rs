@@ -66,6 +66,7 @@ fn lists_help_and_version_teach() {
         assert!(all.contains(word), "{word}: {all}");
     }
     assert!(!folder.prints(&["list", "formats"]).contains("cornell-box"));
+    assert!(folder.prints(&["list", "orders"]).contains("breadth-first"));
     assert!(folder.prints(&["list", "sequences"]).contains("scrambled-halton"));
     assert!(folder.prints(&[]).contains("Usage: isolux"));
     assert!(folder.prints(&["--version"]).starts_with("isolux "));

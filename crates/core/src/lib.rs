@@ -4,6 +4,7 @@
 //! `math -> {scene, sampling} -> mesh -> geometry -> transport -> form_factors -> solvers -> solution -> view`
 //! (see ARCHITECTURE.md). Units are SI and photometric throughout: metres, lumens, lux (lm/m²), candela.
 
+pub mod choice;
 pub mod compare;
 mod error;
 pub mod form_factors;

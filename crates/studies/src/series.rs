@@ -4,7 +4,7 @@ use crate::Error;
 use crate::spec::Series;
 use isolux_core::sampling::address::Address;
 use isolux_core::solvers::monte_carlo::Method;
-use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Order, Survival, Walk};
+use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Survival, Walk};
 
 /// What a series may tell its measure besides.
 const OF_MEASURES: [&str; 4] = ["estimate", "rays", "factors", "worst-tenth"];
@@ -26,7 +26,7 @@ impl Series {
                 "method" | "address" => {}
                 axis if OF_MEASURES.contains(&axis) => {}
                 "sequence" => method.sequence = value.parse()?,
-                Order::NAME => method.order = member(value)?,
+                "order" => method.order = value.parse()?,
                 Lines::NAME => method.lines = member(value)?,
                 Walk::NAME => method.walk = member(value)?,
                 Estimator::NAME => method.estimator = member(value)?,

@@ -2,7 +2,9 @@
 
 use isolux_core::sampling::SequenceName;
 use isolux_core::sampling::address::Address;
-use isolux_core::solvers::monte_carlo::axes::{Direction, Estimator, FirstShot, Lines, Order, Survival};
+use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Survival};
+use isolux_core::solvers::monte_carlo::method::STOCHASTIC_JACOBI;
+use isolux_core::solvers::monte_carlo::orders::OrderName;
 use isolux_core::solvers::monte_carlo::{METHODS, Method, Settings};
 use isolux_core::transport::Leaving;
 
@@ -43,9 +45,25 @@ pub fn methods() -> Vec<Trial> {
     named.chain(variants.map(|(name, method)| Trial { name: name.to_owned(), method })).collect()
 }
 
+/// What is no method, for its mean is not the solution: regular power shooting, which averages iterations that lack light. It keeps its
+/// books, repeats its bits and comes to an end as all others do.
+pub fn regular() -> Vec<Trial> {
+    let order = "regular".parse().expect("an order of the table");
+    let of = |lines: Lines| Trial {
+        name: format!("regular, {} lines", lines.name()),
+        method: Method { order, lines, ..STOCHASTIC_JACOBI },
+    };
+    Lines::ALL.iter().copied().map(of).collect()
+}
+
 /// All methods with all sequences.
 pub fn methods_and_sequences() -> impl Iterator<Item = Trial> {
-    methods().into_iter().flat_map(|Trial { name, method }| {
+    with_sequences(methods())
+}
+
+/// Each of `trials` with all sequences.
+pub fn with_sequences(trials: Vec<Trial>) -> impl Iterator<Item = Trial> {
+    trials.into_iter().flat_map(|Trial { name, method }| {
         SequenceName::all().map(move |sequence| Trial {
             name: format!("{name}, {}", sequence.entry().name),
             method: Method { sequence, ..method },
@@ -55,12 +73,13 @@ pub fn methods_and_sequences() -> impl Iterator<Item = Trial> {
 
 /// Whether the mean over many runs is the exact solution. It is not where light leaves with a later point of the sequence that
 /// brought it, for the points of one sequence avoid each other: the counters of elements run on over steps, and multipath sends
-/// light along one line after the other. With random numbers it is. Keller's walks end a particle's share too early.
+/// light along one line after the other. With random numbers it is. Keller's walks end a particle's share too early, and regular
+/// power shooting is behind.
 pub fn is_unbiased(method: &Method) -> bool {
     let runs_on = method.address == Address::PerElement;
-    let multipath = method.order == Order::DepthFirst && method.lines == Lines::Global;
+    let multipath = method.order == OrderName::DEPTH_FIRST && method.lines == Lines::Global;
     let independent = method.sequence == SequenceName::RANDOM || !(runs_on || multipath);
-    independent && method.survival != Survival::Fraction
+    independent && method.survival != Survival::Fraction && !is_regular(method)
 }
 
 /// `settings` with another method, and elements of constant radiosity to the letter.
@@ -72,6 +91,11 @@ pub fn with_method(method: Method, settings: Settings) -> Settings {
 /// light, and iterations are noisy: there it is the unshot light that closes it.
 pub fn leaves_nothing(method: &Method) -> bool {
     method.lines == Lines::Local
-        && !matches!(method.order, Order::StochasticRay | Order::Wdrs)
+        && ![OrderName::STOCHASTIC_RAY, OrderName::WDRS].contains(&method.order)
+        && !is_regular(method)
         && method.direction == Direction::Shooting
+}
+
+fn is_regular(method: &Method) -> bool {
+    method.order.name() == "regular"
 }

@@ -17,6 +17,7 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("battery: box", 19 * 8 * comparisons(6)),
     ("battery: furnace", 19 * 8 * comparisons(6)),
     ("battery: sphere", 19 * 8 * comparisons(8)),
+    ("regular power shooting", comparisons(8)),
     ("form factors of the sphere by local lines", 8),
     ("uniform points of a sphere's element", 1),
     ("form factors of rectangles by local lines", 3),

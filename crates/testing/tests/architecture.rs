@@ -8,14 +8,15 @@ use std::path::{Path, PathBuf};
 /// its own level or higher.
 const LAYERS: &[(usize, &[&str])] = &[
     (0, &["math", "error", "VERSION"]),
-    (1, &["scene", "sampling"]),
-    (2, &["mesh"]),
-    (3, &["geometry"]),
-    (4, &["problem"]),
-    (5, &["transport", "solution"]),
-    (6, &["form_factors"]),
-    (7, &["solvers"]),
-    (8, &["run", "view", "report", "compare"]),
+    (1, &["choice"]),
+    (2, &["scene", "sampling"]),
+    (3, &["mesh"]),
+    (4, &["geometry"]),
+    (5, &["problem"]),
+    (6, &["transport", "solution"]),
+    (7, &["form_factors"]),
+    (8, &["solvers"]),
+    (9, &["run", "view", "report", "compare"]),
 ];
 
 /// Names re-exported at the root, and where they live.

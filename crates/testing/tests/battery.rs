@@ -11,7 +11,9 @@ use isolux_core::solvers::Solver;
 use isolux_core::solvers::monte_carlo::axes::{FirstShot, Lines, Walk};
 use isolux_core::solvers::monte_carlo::{Budget, Method, MonteCarlo, Settings};
 use isolux_core::{Problem, Solution};
-use isolux_testing::battery::{is_unbiased, leaves_nothing, methods, methods_and_sequences, with_method};
+use isolux_testing::battery::{
+    is_unbiased, leaves_nothing, methods, methods_and_sequences, regular, with_method, with_sequences,
+};
 use isolux_testing::budget::assert_t_of;
 use isolux_testing::contour::convex_room_answer;
 use isolux_testing::ensemble::{
@@ -120,7 +122,7 @@ fn faults_are_seen_with_a_continuous_walk() {
 fn the_balance_of_every_method_closes() {
     for (name, elements) in [("cubes", 500), ("cornell-box", 500)] {
         let problem = problem(name, elements);
-        for trial in methods_and_sequences() {
+        for trial in methods_and_sequences().chain(with_sequences(regular())) {
             let balance = solve(&problem, with_method(trial.method, rays(40_000))).balance;
             assert!(balance.residual().abs() < 1e-6, "{}: {} of {balance:?}", trial.name, balance.residual());
             let unshot = (balance.unshot / balance.emitted).abs();
@@ -137,7 +139,7 @@ fn bits(solution: &Solution) -> Vec<u8> {
 #[test]
 fn every_method_gives_the_same_bits_on_any_number_of_threads_and_when_resumed() {
     let problem = problem("cornell-box", 300);
-    for trial in methods_and_sequences() {
+    for trial in methods_and_sequences().chain(regular()) {
         let settings = Settings { method: trial.method, ..rays(150_000) };
         let on = |threads: usize| {
             let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -173,7 +175,7 @@ fn lonely(emission: f32) -> Problem {
 
 #[test]
 fn scenes_without_light_and_with_one_element_are_no_trouble() {
-    for trial in methods() {
+    for trial in methods().into_iter().chain(regular()) {
         for budget in [Budget::Heuristic, Budget::Rays(1000)] {
             let settings = Settings { budget, replicates: 8, ..with_method(trial.method, Settings::default()) };
             let dark = solve(&lonely(0.0), settings);

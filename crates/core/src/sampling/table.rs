@@ -1,9 +1,7 @@
 //! The table of all sequences, and how settings name one of them.
 
 use super::{Sequence, faure, generalised_faure, halton, niederreiter, owen_sobol, random, scrambled_halton, sobol};
-use crate::Error;
-use std::fmt;
-use std::str::FromStr;
+use crate::choice::{Choice, TableEntry};
 
 /// A sequence that can be asked for by name.
 #[derive(Debug)]
@@ -29,25 +27,22 @@ pub const SEQUENCES: &[Entry] = &[
     random::ENTRY,
 ];
 
-/// A choice from [`SEQUENCES`]. It is written, parsed and stored as the name.
-#[derive(Clone, Copy, serde::Serialize, serde::Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub struct SequenceName(&'static Entry);
+impl TableEntry for Entry {
+    const KIND: &'static str = "sample sequence";
+    const TABLE: &'static [Entry] = SEQUENCES;
+
+    fn name(&self) -> &'static str {
+        self.name
+    }
+}
+
+/// A choice from [`SEQUENCES`].
+pub type SequenceName = Choice<Entry>;
 
 impl SequenceName {
-    pub const OWEN_SOBOL: SequenceName = SequenceName(&owen_sobol::ENTRY);
-    pub const HALTON: SequenceName = SequenceName(&halton::ENTRY);
-    pub const RANDOM: SequenceName = SequenceName(&random::ENTRY);
-
-    /// All choices, in the order of the table.
-    pub fn all() -> impl Iterator<Item = SequenceName> {
-        SEQUENCES.iter().map(SequenceName)
-    }
-
-    /// The line of the table.
-    pub fn entry(self) -> &'static Entry {
-        self.0
-    }
+    pub const OWEN_SOBOL: SequenceName = Choice(&owen_sobol::ENTRY);
+    pub const HALTON: SequenceName = Choice(&halton::ENTRY);
+    pub const RANDOM: SequenceName = Choice(&random::ENTRY);
 
     /// The sequence randomised by `seed`.
     pub fn make(self, seed: u64) -> Box<dyn Sequence> {
@@ -55,65 +50,12 @@ impl SequenceName {
     }
 }
 
-impl Default for SequenceName {
-    fn default() -> SequenceName {
-        SequenceName(&SEQUENCES[0])
-    }
-}
-
-impl FromStr for SequenceName {
-    type Err = Error;
-
-    /// # Errors
-    /// [`Error::UnknownName`] with the nearest name of the table.
-    fn from_str(name: &str) -> Result<SequenceName, Error> {
-        let found = SequenceName::all().find(|choice| choice.0.name == name);
-        found.ok_or_else(|| Error::unknown_name("sample sequence", name, SEQUENCES.iter().map(|entry| entry.name)))
-    }
-}
-
-impl TryFrom<String> for SequenceName {
-    type Error = Error;
-
-    fn try_from(name: String) -> Result<SequenceName, Error> {
-        name.parse()
-    }
-}
-
-impl From<SequenceName> for String {
-    fn from(choice: SequenceName) -> String {
-        choice.0.name.to_owned()
-    }
-}
-
-impl fmt::Display for SequenceName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.0.name)
-    }
-}
-
-impl fmt::Debug for SequenceName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.0.name)
-    }
-}
-
-impl PartialEq for SequenceName {
-    fn eq(&self, other: &SequenceName) -> bool {
-        self.0.name == other.0.name
-    }
-}
-
-impl Eq for SequenceName {}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::choice::tests::{assert_every_file_is_in_the_table, assert_named};
     use crate::sampling::Sample;
     use crate::sampling::construction::quality::is_net;
-    use serde::Deserialize;
-    use serde::de::IntoDeserializer;
-    use std::path::Path;
 
     fn points(entry: &Entry, seed: u64, stream: u64, first: u64, n: usize) -> Vec<Sample> {
         let mut points = vec![[f32::NAN; 4]; n];
@@ -122,32 +64,10 @@ mod tests {
     }
 
     #[test]
-    fn every_file_is_in_the_table() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/sampling");
-        let files = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
-        let mut members: Vec<String> = files
-            .filter_map(|file| file.strip_suffix(".rs").map(|stem| stem.replace('_', "-")))
-            .filter(|stem| !["mod", "table", "address"].contains(&stem.as_str()))
-            .collect();
-        let mut names: Vec<&str> = SEQUENCES.iter().map(|entry| entry.name).collect();
-        members.sort_unstable();
-        names.sort_unstable();
-        assert_eq!(members, names);
-    }
-
-    #[test]
-    fn names_are_parsed_stored_and_helped_with() {
-        let stored = |name: &'static str| {
-            SequenceName::deserialize(IntoDeserializer::<serde::de::value::Error>::into_deserializer(name))
-        };
-        for choice in SequenceName::all() {
-            let name = choice.entry().name;
-            assert_eq!((name.parse(), stored(name), String::from(choice)), (Ok(choice), Ok(choice), name.to_owned()));
-        }
-        assert_eq!(SequenceName::default().to_string(), "owen-sobol");
-        let error = "fauer".parse::<SequenceName>().unwrap_err().to_string();
-        assert!(error.contains("'fauer'; did you mean 'faure'?"), "{error}");
-        assert!(stored("halt").unwrap_err().to_string().contains("did you mean 'halton'?"));
+    fn every_file_is_in_the_table_and_has_its_name() {
+        assert_every_file_is_in_the_table::<Entry>("sampling", &["mod", "table", "address"]);
+        assert_named::<Entry>();
+        assert_eq!(SequenceName::default(), SequenceName::OWEN_SOBOL);
     }
 
     #[test]

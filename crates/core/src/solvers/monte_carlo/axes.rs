@@ -1,7 +1,7 @@
 //! The axes of Monte Carlo radiosity: every algorithm of the survey is a choice on each (Bekaert, Cools & Willems 1999).
 //!
-//! The axis of sample numbers is open and has a table of its own, [`crate::sampling::SEQUENCES`]; the address is in
-//! [`crate::sampling::address`].
+//! Two axes are open and have tables of their own: the sample numbers, [`crate::sampling::SEQUENCES`], and the order in which landed
+//! light is shot again, [`super::orders::ORDERS`]. The address is in [`crate::sampling::address`].
 
 /// An axis with its members.
 pub trait Axis: Copy + Sized + 'static {
@@ -52,23 +52,6 @@ axis! {
     Global = "global",
     /// Parallel global lines on a regular grid (Sbert 1997; Szirmay-Kalos & Purgathofer 1998).
     Bundle = "bundle",
-}
-
-axis! {
-    /// When is landed light shot again, and how much?
-    Order, "order":
-    /// At once, particle by particle: the random walk.
-    DepthFirst = "depth-first",
-    /// All of it in the next sweep (Shirley 1991).
-    BreadthFirst = "breadth-first",
-    /// Shirley's sweep in stages, with a whole solution after each (Feda & Purgathofer 1993).
-    Staged = "staged",
-    /// The whole power in every iteration, and the mean over iterations (Neumann et al. 1995).
-    StochasticRay = "stochastic-ray",
-    /// When an element lacks rays of the common power (Neumann et al. 1997).
-    Wdrs = "wdrs",
-    /// All of it until none is left, then the whole once more, then gathering (Bekaert 1999).
-    StochasticJacobi = "stochastic-jacobi",
 }
 
 axis! {

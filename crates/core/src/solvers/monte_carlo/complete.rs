@@ -1,18 +1,17 @@
 //! One complete solution, by whatever order: what the estimate is the mean of.
 
-use super::axes::{Lines, Order};
-use super::relaxation::Relaxation;
-use super::walks::Walks;
-use super::wdrs::Wdrs;
-use super::{Experience, Settings};
+use super::Experience;
 use crate::Problem;
 use crate::math::Rgb;
 use crate::solution::Balance;
 use crate::solvers::Part;
+use std::fmt::Debug;
 use std::ops::Range;
 
-/// What every order can do. A complete solution starts again in the same memory.
-pub trait CompleteSolution {
+/// What every order can do. A complete solution starts again in the same memory. Its state is saved with the name of its type, so
+/// it is loaded whatever type that is.
+#[typetag::serde]
+pub trait CompleteSolution: Debug + Send + Sync {
     /// Starts an independent complete solution of about `rays` rays.
     fn restart(&mut self, problem: &Problem, seed: u64, rays: u64, experience: &Experience);
 
@@ -37,40 +36,4 @@ pub trait CompleteSolution {
 
     /// What is being done, for people.
     fn stage(&self) -> &'static str;
-}
-
-/// The orders, each with its state.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub enum Complete {
-    Relaxation(Box<Relaxation>),
-    Wdrs(Box<Wdrs>),
-    Walks(Box<Walks>),
-}
-
-impl Complete {
-    /// The order that `settings` ask for, ready to be started.
-    pub fn new(problem: &Problem, settings: &Settings) -> Complete {
-        let method = settings.method;
-        match (method.order, method.lines) {
-            (Order::DepthFirst, Lines::Local) => Complete::Walks(Box::new(Walks::new(problem, method))),
-            (Order::Wdrs, _) => Complete::Wdrs(Box::new(Wdrs::new(problem, settings))),
-            _ => Complete::Relaxation(Box::new(Relaxation::new(problem, settings))),
-        }
-    }
-
-    pub fn as_ref(&self) -> &dyn CompleteSolution {
-        match self {
-            Complete::Relaxation(relaxation) => relaxation.as_ref(),
-            Complete::Wdrs(wdrs) => wdrs.as_ref(),
-            Complete::Walks(walks) => walks.as_ref(),
-        }
-    }
-
-    pub fn as_mut(&mut self) -> &mut dyn CompleteSolution {
-        match self {
-            Complete::Relaxation(relaxation) => relaxation.as_mut(),
-            Complete::Wdrs(wdrs) => wdrs.as_mut(),
-            Complete::Walks(walks) => walks.as_mut(),
-        }
-    }
 }

@@ -1,6 +1,7 @@
 //! A method: a point in the space of the axes. Those that the literature names are in a table.
 
-use super::axes::{Axis, Direction, Estimator, FirstShot, Lines, Order, Survival, Walk};
+use super::axes::{Axis, Direction, Estimator, FirstShot, Lines, Survival, Walk};
+use super::orders::OrderName;
 use crate::Error;
 use crate::sampling::SequenceName;
 use crate::sampling::address::Address;
@@ -10,7 +11,7 @@ use crate::sampling::address::Address;
 pub struct Method {
     pub walk: Walk,
     pub lines: Lines,
-    pub order: Order,
+    pub order: OrderName,
     pub sequence: SequenceName,
     pub address: Address,
     pub estimator: Estimator,
@@ -33,7 +34,7 @@ pub struct NamedMethod {
 pub const STOCHASTIC_JACOBI: Method = Method {
     walk: Walk::Discrete,
     lines: Lines::Local,
-    order: Order::StochasticJacobi,
+    order: OrderName::STOCHASTIC_JACOBI,
     sequence: SequenceName::OWEN_SOBOL,
     address: Address::PerIteration,
     estimator: Estimator::Collision,
@@ -42,11 +43,11 @@ pub const STOCHASTIC_JACOBI: Method = Method {
     first_shot: FirstShot::Local,
 };
 
-const fn of_order(order: Order) -> Method {
+const fn of_order(order: OrderName) -> Method {
     Method { order, ..STOCHASTIC_JACOBI }
 }
 
-const RANDOM_WALK: Method = Method { order: Order::DepthFirst, address: Address::PerElement, ..STOCHASTIC_JACOBI };
+const RANDOM_WALK: Method = Method { order: OrderName::DEPTH_FIRST, address: Address::PerElement, ..STOCHASTIC_JACOBI };
 const PARTICLES: Method = Method { walk: Walk::Continuous, address: Address::PerParticle, ..RANDOM_WALK };
 
 /// All methods with a name. The first is the default.
@@ -64,19 +65,19 @@ pub const METHODS: &[NamedMethod] = &[
         name: "stochastic-ray",
         what: ["shoots the whole power in each iteration and averages the iterations", "after a warm-up"],
         source: "Neumann et al. 1995",
-        method: of_order(Order::StochasticRay),
+        method: of_order(OrderName::STOCHASTIC_RAY),
     },
     NamedMethod {
         name: "shirley",
         what: ["one breadth-first sweep: all landed light is shot in the next step,", "until none is left"],
         source: "Shirley 1991",
-        method: of_order(Order::BreadthFirst),
+        method: of_order(OrderName::BREADTH_FIRST),
     },
     NamedMethod {
         name: "feda",
         what: ["Shirley's sweep in stages of growing numbers of rays, each of them", "a whole solution, averaged"],
         source: "Feda & Purgathofer 1993",
-        method: of_order(Order::Staged),
+        method: of_order(OrderName::STAGED),
     },
     NamedMethod {
         name: "wdrs",
@@ -85,7 +86,7 @@ pub const METHODS: &[NamedMethod] = &[
             "that it lacks; no ray is wasted when the power of a ray is lowered",
         ],
         source: "Neumann, Neumann, Bekaert et al. 1997",
-        method: Method { address: Address::PerElement, ..of_order(Order::Wdrs) },
+        method: Method { address: Address::PerElement, ..of_order(OrderName::WDRS) },
     },
     NamedMethod {
         name: "particle-tracing",
@@ -138,7 +139,7 @@ pub const METHODS: &[NamedMethod] = &[
             "elements exchange their light",
         ],
         source: "Szirmay-Kalos & Purgathofer 1998; Sbert 1997",
-        method: Method { lines: Lines::Bundle, ..of_order(Order::BreadthFirst) },
+        method: Method { lines: Lines::Bundle, ..of_order(OrderName::BREADTH_FIRST) },
     },
 ];
 
@@ -162,19 +163,12 @@ impl Method {
 
     /// The address that suits the other axes.
     pub fn natural_address(&self) -> Address {
-        match (self.order, self.lines, self.walk) {
-            (Order::DepthFirst, Lines::Local, Walk::Continuous) => Address::PerParticle,
-            (Order::DepthFirst, Lines::Local, Walk::Discrete) if self.survival == Survival::Fraction => {
-                Address::PerParticle
-            }
-            (Order::DepthFirst, Lines::Local, Walk::Discrete) | (Order::Wdrs, ..) => Address::PerElement,
-            _ => Address::PerIteration,
-        }
+        (self.order.entry().natural_address)(self)
     }
 
-    /// Whether light of many lines is pooled on the elements before it leaves: every order but the random walk.
+    /// Whether light of many lines is pooled on the elements before it leaves: everything but the random walk.
     pub fn pools(&self) -> bool {
-        self.order != Order::DepthFirst || self.lines != Lines::Local
+        (self.order.entry().pools)(self.lines)
     }
 
     /// Whether [`crate::transport::Leaving`] means anything to it: a walk goes on as its kind says, and global lines cross all of an element.
@@ -187,8 +181,8 @@ impl Method {
         let mut parameters = vec![
             (Walk::NAME, self.walk.name()),
             (Lines::NAME, self.lines.name()),
-            (Order::NAME, self.order.name()),
-            ("sequence", self.sequence.entry().name),
+            ("order", self.order.name()),
+            ("sequence", self.sequence.name()),
             ("address", self.address.name()),
         ];
         if !self.pools() {

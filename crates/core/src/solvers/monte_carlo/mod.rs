@@ -1,7 +1,7 @@
 //! Monte Carlo radiosity, by any method of the survey (see [`method`]).
 //!
 //! The estimate is the mean of independently randomised *complete solutions* (see [`complete`]), and their spread gives every
-//! element its standard error. Which of them are biased, and by how much, is said where they are: [`relaxation`], [`wdrs`],
+//! element its standard error. Which of them are biased, and by how much, is said where they are: [`orders`], [`relaxation`],
 //! [`walks`]. What is estimated is the solution with constant elements if light leaves them from
 //! anywhere, a less leaky one if it leaves from where it landed, and the radiosity equation itself for continuous walks. The
 //! error bars do not contain what elements of finite size cost. Cost: one ray a sample.
@@ -12,16 +12,16 @@ mod experience;
 mod light;
 mod meaning;
 pub mod method;
+pub mod orders;
 mod relaxation;
 mod settings;
 mod sources;
 mod walks;
-mod wdrs;
 
 pub use method::{METHODS, Method, NamedMethod};
 pub use settings::{Budget, Settings};
 
-use self::complete::Complete;
+use self::complete::CompleteSolution;
 use self::experience::Experience;
 use super::replicates::Replicates;
 use super::{Part, Progress, Solver, budget};
@@ -39,7 +39,7 @@ const MOST_RAYS_EACH: u64 = u32::MAX as u64;
 const RAYS_PER_ELEMENT: u64 = 1000;
 
 /// The solver's state: a checkpoint, as it is.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
 pub struct MonteCarlo {
     settings: Settings,
     /// Independent complete solutions in a round.
@@ -51,7 +51,7 @@ pub struct MonteCarlo {
     replicates: Replicates,
     /// Number of the running replicate.
     replicate: u32,
-    complete: Complete,
+    complete: Box<dyn CompleteSolution>,
     experience: Experience,
     /// Sum of the balances of the finished replicates [lm].
     balance: Balance,
@@ -86,8 +86,8 @@ impl MonteCarlo {
             rays_in_round.div_ceil(most_each).clamp(settings.replicates.into(), u32::MAX.into()) as u32;
         let rays_each = rays_in_round.div_ceil(replicates_in_round.into());
         let experience = Experience::expected(problem);
-        let mut complete = Complete::new(problem, &settings);
-        complete.as_mut().restart(problem, derive(settings.seed, 0), rays_each, &experience);
+        let mut complete = (settings.method.order.entry().make)(problem, &settings);
+        complete.restart(problem, derive(settings.seed, 0), rays_each, &experience);
         Ok(MonteCarlo {
             settings,
             replicates_in_round,
@@ -110,7 +110,7 @@ impl MonteCarlo {
     }
 
     fn is_dark(&self) -> bool {
-        self.complete.as_ref().balance().emitted <= 0.0
+        self.complete.balance().emitted <= 0.0
     }
 
     /// Takes a finished complete solution into the estimate and starts the next one.
@@ -118,7 +118,7 @@ impl MonteCarlo {
         let complete = self.complete.as_ref();
         self.replicates.push(complete.rays(), problem.mesh.elements().map(|e| complete.irradiance(problem, e)));
         self.experience = complete.experience();
-        self.balance = self.balance + self.complete.as_ref().balance();
+        self.balance = self.balance + complete.balance();
         self.replicate += 1;
         if self.replicates.count_in_round() >= 2 {
             self.rms_error = Some(relative_error(problem, |e| {
@@ -134,7 +134,7 @@ impl MonteCarlo {
             self.rays_each = (2 * self.rays_each).min(most_rays_each(problem, &self.settings));
         }
         let seed = derive(self.settings.seed, u64::from(self.replicate));
-        self.complete.as_mut().restart(problem, seed, self.rays_each, &self.experience);
+        self.complete.restart(problem, seed, self.rays_each, &self.experience);
     }
 
     fn provenance(&self, problem: &Problem) -> Provenance {
@@ -162,32 +162,30 @@ impl MonteCarlo {
 
 impl Solver for MonteCarlo {
     fn step(&self) -> Option<Range<u64>> {
-        if self.is_finished() { None } else { self.complete.as_ref().pieces() }
+        if self.is_finished() { None } else { self.complete.pieces() }
     }
 
     fn part(&self, problem: &Problem, piece: u64) -> Part {
-        self.complete.as_ref().part(problem, piece)
+        self.complete.part(problem, piece)
     }
 
     fn absorb(&mut self, problem: &Problem, part: Part) {
         self.rays += part.rays;
-        self.complete.as_mut().absorb(problem, part, &self.experience);
-        if self.complete.as_ref().pieces().is_none() {
+        self.complete.absorb(problem, part, &self.experience);
+        if self.complete.pieces().is_none() {
             self.next_replicate(problem);
         }
     }
 
     fn solution(&self, problem: &Problem) -> Solution {
         let unfinished = self.replicates.count() == 0;
-        let mean =
-            |e| if unfinished { self.complete.as_ref().irradiance(problem, e) } else { self.replicates.estimate(e).0 };
+        let mean = |e| if unfinished { self.complete.irradiance(problem, e) } else { self.replicates.estimate(e).0 };
         let std_error = |e| match unfinished {
             _ if self.is_dark() => Rgb::BLACK,
             true => Rgb::grey(f32::NAN),
             false => self.replicates.estimate(e).1.map(f32::sqrt),
         };
-        let balance =
-            if unfinished { self.complete.as_ref().balance() } else { self.balance / f64::from(self.replicate) };
+        let balance = if unfinished { self.complete.balance() } else { self.balance / f64::from(self.replicate) };
         Solution {
             irradiance: problem.mesh.elements().map(mean).collect(),
             std_error: problem.mesh.elements().map(std_error).collect(),
@@ -199,11 +197,11 @@ impl Solver for MonteCarlo {
 
     fn progress(&self) -> Progress {
         Progress {
-            stage: self.complete.as_ref().stage(),
+            stage: self.complete.stage(),
             rays: self.rays,
             rays_in_all: self.rays_in_all,
             unshot: {
-                let Balance { unshot, emitted, .. } = self.complete.as_ref().balance();
+                let Balance { unshot, emitted, .. } = self.complete.balance();
                 unshot / emitted.max(f64::MIN_POSITIVE)
             },
             rms_error: self.rms_error,

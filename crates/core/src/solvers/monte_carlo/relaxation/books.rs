@@ -1,13 +1,57 @@
 //! The ends of steps: what has landed falls on its element, and the books are kept.
 
 use super::draw::Draw;
-use super::{Origin, Relaxation};
+use super::{Relaxation, Stage};
 use crate::Problem;
 use crate::solution::Balance;
+use crate::solvers::monte_carlo::axes::FirstShot;
+use crate::solvers::monte_carlo::light::Origin;
+use crate::solvers::monte_carlo::sources;
 
 impl Relaxation {
+    /// Ends a step of `stage`, as the stage wants it.
+    pub(super) fn settle(&mut self, stage: Stage, problem: &Problem) {
+        let rays = self.draw.rays();
+        match stage {
+            Stage::Lamps => self.reflect(problem, Origin::Lamps),
+            Stage::Emission => {
+                self.emission_ray_flux = self.shot / rays as f64;
+                self.reflect(problem, Origin::Emission);
+                self.direct_balance = self.balance;
+            }
+            Stage::Multipath { .. } => {
+                self.reflected_rays += rays;
+                self.end_multipath(problem);
+            }
+            Stage::Incremental { .. } => {
+                self.reflected_rays += rays;
+                self.light.spend_unshot();
+                self.reflect(problem, Origin::Reflection);
+            }
+            Stage::WarmUp { .. } => self.iterate(problem, 1.0),
+            Stage::Averaged { .. } => self.iterate(problem, 1.0 / self.iteration as f32),
+            Stage::Regular => {
+                self.light.average_in(rays as f32 / (rays + self.reflected_rays) as f32);
+                self.reflected_rays += rays;
+            }
+            Stage::Gathering => self.merge_gathered(problem),
+        }
+    }
+
+    /// Ends the lines of multipath: what still waits on elements is to be shot by others.
+    fn end_multipath(&mut self, problem: &Problem) {
+        // On average all that surfaces emit has left; the rest of it is adrift.
+        if self.method.first_shot == FirstShot::Same {
+            self.adrift += sources::of_surfaces(problem);
+        }
+        self.light.find_active();
+        self.balance.escaped += self.lost[0];
+        self.balance.back_face += self.lost[1];
+        self.balance.unshot = self.light.unshot_total() + self.adrift;
+    }
+
     /// Ends a step that shot light for the first time, and keeps the books.
-    pub(super) fn reflect(&mut self, problem: &Problem, origin: Origin) {
+    fn reflect(&mut self, problem: &Problem, origin: Origin) {
         let landed = self.light.reflect(&problem.mesh, origin);
         self.balance.escaped += self.lost[0];
         self.balance.back_face += self.lost[1];
@@ -23,7 +67,7 @@ impl Relaxation {
     /// Ends an iteration that shot all reflected light, and is averaged in with weight `share`. With the means over the
     /// averaged iterations, what is shot is what lands and what is lost; the balance's unshot light is what the light reflected
     /// now differs from what was shot: the noise of the iterations.
-    pub(super) fn iterate(&mut self, problem: &Problem, share: f32) {
+    fn iterate(&mut self, problem: &Problem, share: f32) {
         self.light.average_in(share);
         let share = f64::from(share);
         let Balance { emitted, escaped, back_face, .. } = self.direct_balance;
@@ -44,7 +88,7 @@ impl Relaxation {
     }
 
     /// Merges what was gathered with what was shot.
-    pub(super) fn merge_gathered(&mut self, problem: &Problem) {
+    fn merge_gathered(&mut self, problem: &Problem) {
         let Draw::Local(allocation) = &self.draw else { return };
         for (e, n) in allocation.counts() {
             let area = problem.mesh.area(e);

@@ -1,15 +1,11 @@
-//! The sweeps of one complete solution: one, or several of the order `staged`.
+//! The sweeps of one complete solution: one, or several.
 //!
 //! Each sweep has twice the rays of the one before and is a solution of its own; the estimate is their mean, weighted with
 //! their rays (Feda & Purgathofer 1993).
 
 use crate::math::Rgb;
 use crate::solution::Balance;
-use crate::solvers::monte_carlo::axes::Order;
 use crate::solvers::monte_carlo::light::Light;
-
-/// Sweeps of the order `staged`.
-const STAGES: u32 = 4;
 
 /// What the finished sweeps of a complete solution gave.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -25,8 +21,8 @@ pub struct Sweeps {
 }
 
 impl Sweeps {
-    pub fn new(order: Order, elements: usize) -> Sweeps {
-        let count = if order == Order::Staged { STAGES } else { 1 };
+    /// So many sweeps over so many elements.
+    pub fn new(count: u32, elements: usize) -> Sweeps {
         let flux = vec![Rgb::BLACK; if count > 1 { elements } else { 0 }];
         Sweeps { count, done: 0, rays_before: 0, flux, balance: Balance::default() }
     }

@@ -36,7 +36,7 @@ use std::ops::Range;
 const WAVE: u64 = 1 << 20;
 
 /// The state of one complete solution.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
 pub struct Walks {
     method: Method,
     seed: u64,
@@ -134,6 +134,7 @@ impl Walks {
     }
 }
 
+#[typetag::serde]
 impl CompleteSolution for Walks {
     fn restart(&mut self, problem: &Problem, seed: u64, rays: u64, experience: &Experience) {
         (self.seed, self.rays_done, self.born) = (seed, 0, 0);

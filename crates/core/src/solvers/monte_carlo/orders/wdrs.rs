@@ -10,24 +10,36 @@
 //! one sequence avoid each other, and how many an element shoots depends on where earlier ones went (with `--sequence random` there
 //! is no such bias). Memory: 20 bytes a source beside its light ([`Light`]). Cost: one ray a sample.
 
-use super::complete::CompleteSolution;
-use super::light::{Light, Origin};
-use super::{Experience, Method, Settings, patience, sources};
-use crate::Problem;
+use super::Entry;
 use crate::math::Rgb;
 use crate::math::hash::{derive, unit_f64};
-use crate::sampling::address::Counters;
+use crate::sampling::address::{Address, Counters};
 use crate::solution::Balance;
 use crate::solvers::allocation::Allocation;
+use crate::solvers::monte_carlo::axes::Lines;
+use crate::solvers::monte_carlo::complete::CompleteSolution;
+use crate::solvers::monte_carlo::light::{Light, Origin};
+use crate::solvers::monte_carlo::{Experience, Method, Settings, patience, sources};
 use crate::solvers::{Part, shooting};
 use crate::transport::Footprint;
+use crate::{Error, Problem};
 use std::ops::Range;
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "wdrs",
+    what: "when an element lacks rays of the common power: well distributed ray sets",
+    source: "Neumann, Neumann, Bekaert et al. 1997",
+    pools: |_| true,
+    natural_address: |_| Address::PerElement,
+    check,
+    make: |problem, settings| Box::new(Wdrs::new(problem, settings)),
+};
 
 /// How often the flux of a ray is halved in a complete solution.
 const REFINEMENTS: i32 = 3;
 
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub struct Wdrs {
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+struct Wdrs {
     method: Method,
     seed: u64,
     rays_done: u64,
@@ -54,8 +66,16 @@ pub struct Wdrs {
     reflected: f64,
 }
 
+fn check(method: &Method) -> Result<(), Error> {
+    if method.lines != Lines::Local {
+        let what = "an element cannot be given the rays that it lacks, for global lines cannot be aimed";
+        return Err(Error::Meaningless { what, nearest: "--order stochastic-jacobi" });
+    }
+    Ok(())
+}
+
 impl Wdrs {
-    pub fn new(problem: &Problem, settings: &Settings) -> Wdrs {
+    fn new(problem: &Problem, settings: &Settings) -> Wdrs {
         let sources = sources::count(problem);
         Wdrs {
             method: settings.method,
@@ -135,6 +155,7 @@ impl Wdrs {
     }
 }
 
+#[typetag::serde]
 impl CompleteSolution for Wdrs {
     fn restart(&mut self, problem: &Problem, seed: u64, rays: u64, experience: &Experience) {
         (self.seed, self.rays_done, self.step) = (seed, 0, 0);
@@ -224,7 +245,6 @@ mod tests {
     use super::*;
     use crate::mesh::Resolution;
     use crate::scene::builtin::builtin;
-    use crate::solvers::monte_carlo::Settings;
     use crate::transport::Leaving;
 
     /// A grey box: nothing but the counters is left of how the rays came about.
@@ -281,6 +301,14 @@ mod tests {
                 let [a, b] = [landed[e as usize] / problem.mesh.area(e), refined.irradiance(&problem, e).g];
                 assert!((a - b).abs() <= 1e-4 * a, "element {e}: {a} {b} after {halvings} halvings");
             }
+        }
+    }
+
+    #[test]
+    fn global_lines_are_refused() {
+        for lines in [Lines::Global, Lines::Bundle] {
+            let error = Method { lines, ..Method::named("wdrs").unwrap() }.check().unwrap_err();
+            assert!(error.to_string().contains("global lines cannot be aimed"), "{error}");
         }
     }
 

@@ -1,0 +1,34 @@
+//! Stochastic ray radiosity: the whole power in every iteration, and the mean over iterations (Neumann et al. 1995).
+//!
+//! Iteration k shoots all that surfaces reflect, `R_k = rho b_k`, beside direct light that is shot once, and lands
+//! `F (Pe + R_k)`. In the warm-up that takes the place of `b_k`; then it is averaged in, and each iteration shoots from the mean so
+//! far. Unbiased as every [`Relaxation`]: the warm-up lasts until as little is missing as others leave unshot. Cost: one ray a
+//! sample.
+
+use super::Entry;
+use crate::sampling::address::Address;
+use crate::solvers::monte_carlo::relaxation::{Course, Relaxation, Stage};
+
+/// Share of the rays for reflected light that warm up.
+const WARM_UP_SHARE: f64 = 0.1;
+/// Iterations that are averaged.
+const AVERAGED: u32 = 8;
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "stochastic-ray",
+    what: "the whole power in every iteration; after a warm-up the mean over iterations",
+    source: "Neumann et al. 1995",
+    pools: |_| true,
+    natural_address: |_| Address::PerIteration,
+    check: |_| Ok(()),
+    make: |problem, settings| Box::new(Relaxation::new(problem, settings, course())),
+};
+
+fn course() -> Course {
+    Course::new(&[
+        Stage::Lamps,
+        Stage::Emission,
+        Stage::WarmUp { share: WARM_UP_SHARE },
+        Stage::Averaged { share: 1.0 - WARM_UP_SHARE, iterations: AVERAGED },
+    ])
+}
