@@ -89,7 +89,7 @@ pub fn slope(table: &Table, plot: &PlotSpec, scene: &str, series: &str) -> Optio
 /// All slopes of a study.
 pub fn slopes(table: &Table, spec: &Spec) -> Vec<Fit> {
     let mut fits = Vec::new();
-    for plot in &spec.plots {
+    for plot in spec.plots.iter().filter(|plot| plot.fit) {
         for scene in &spec.scenes {
             let shown = spec.series.iter().filter(|series| plot.shows(&series.name));
             fits.extend(shown.filter_map(|series| slope(table, plot, &scene.name, &series.name)));

@@ -50,6 +50,8 @@ pub enum Outcome {
     },
 }
 
+/// What was asked.
+const STUDY: &str = "study.toml";
 /// The file in which the table grows.
 const RESULT: &str = "result.csv";
 
@@ -142,15 +144,18 @@ fn identify(study: Study, options: Options, folder: &Path) -> Result<(), Error> 
             let what = format!("it was written by {}", found.lines().take(3).collect::<Vec<_>>().join(", "));
             return Err(Error::OtherRun { path, what });
         }
-        let spec = folder.join("study.toml");
-        if spec.exists() && files::read(&spec)? != study.text.as_bytes() {
-            return Err(Error::OtherRun { path: spec, what: "the study has changed since".to_owned() });
+        let path = folder.join(STUDY);
+        if path.exists() {
+            let measured = Spec::parse(study.name, &String::from_utf8_lossy(&files::read(&path)?))?;
+            if !measured.measures_as(&study.spec()?) {
+                return Err(Error::OtherRun { path, what: "the study measures something else now".to_owned() });
+            }
         }
-        return Ok(());
+        return Ok(OutputFile::create(&path)?.finish(study.text.as_bytes())?);
     }
     if folder.join(RESULT).exists() {
         return Err(Error::OtherRun { path: folder.join(RESULT), what: "it is of no known run".to_owned() });
     }
-    OutputFile::create(&folder.join("study.toml"))?.finish(study.text.as_bytes())?;
+    OutputFile::create(&folder.join(STUDY))?.finish(study.text.as_bytes())?;
     Ok(OutputFile::create(&path)?.finish(text.as_bytes())?)
 }

@@ -28,7 +28,7 @@ pub struct Spec {
     quick: Quick,
 }
 
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
     /// As plots call it.
@@ -71,12 +71,18 @@ pub struct PlotSpec {
     /// Slopes that are drawn for comparison.
     #[serde(default)]
     pub guides: Vec<f64>,
-    /// The first x from which slopes are fitted.
+    /// Whether slopes are fitted, and from which x.
+    #[serde(default = "yes")]
+    pub fit: bool,
     #[serde(default)]
     pub fit_from: f64,
     /// Series that are drawn; all if empty.
     #[serde(default)]
     pub series: Vec<String>,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// How a claim shows in the fits of a plot.
@@ -130,6 +136,15 @@ impl Spec {
         spec.seeds = self.quick.seeds.unwrap_or(spec.seeds);
         spec.reference_rays = self.quick.reference_rays.or(spec.reference_rays);
         spec
+    }
+
+    /// Whether a point of both is measured in the same way; plots, signs and where they measure may differ.
+    pub fn measures_as(&self, other: &Spec) -> bool {
+        let series =
+            |spec: &Spec| spec.series.iter().map(|s| (s.name.clone(), s.axes.clone())).collect::<BTreeMap<_, _>>();
+        let common = |scene: &SceneSpec| other.scenes.iter().all(|known| known.name != scene.name || known == scene);
+        let what = |spec: &Spec| (spec.measure.clone(), spec.reference_rays, series(spec));
+        what(self) == what(other) && self.scenes.iter().all(common)
     }
 
     /// Looks for names that are not there.

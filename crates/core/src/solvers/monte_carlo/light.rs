@@ -81,9 +81,14 @@ impl Light {
         self.lamps.get(e as usize).copied().unwrap_or_default()
     }
 
+    /// Flux [lm] on element `e` straight from all lights that have shot.
+    pub fn shot_first(&self, e: u32) -> Rgb {
+        self.lamp_flux(e) + self.direct[e as usize]
+    }
+
     /// All flux [lm] on element `e`.
     pub fn on(&self, e: u32) -> Rgb {
-        self.lamp_flux(e) + self.direct[e as usize] + self.indirect[e as usize]
+        self.shot_first(e) + self.indirect[e as usize]
     }
 
     /// Radiosity [lm/m²] that element `e` reflects.

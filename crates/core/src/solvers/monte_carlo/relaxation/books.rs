@@ -4,9 +4,7 @@ use super::draw::Draw;
 use super::{Relaxation, Stage};
 use crate::Problem;
 use crate::solution::Balance;
-use crate::solvers::monte_carlo::axes::FirstShot;
 use crate::solvers::monte_carlo::light::Origin;
-use crate::solvers::monte_carlo::sources;
 
 impl Relaxation {
     /// Ends a step of `stage`, as the stage wants it.
@@ -21,7 +19,7 @@ impl Relaxation {
             }
             Stage::Multipath { .. } => {
                 self.reflected_rays += rays;
-                self.end_multipath(problem);
+                self.end_multipath();
             }
             Stage::Incremental { .. } => {
                 self.reflected_rays += rays;
@@ -39,11 +37,7 @@ impl Relaxation {
     }
 
     /// Ends the lines of multipath: what still waits on elements is to be shot by others.
-    fn end_multipath(&mut self, problem: &Problem) {
-        // On average all that surfaces emit has left; the rest of it is adrift.
-        if self.method.first_shot == FirstShot::Same {
-            self.adrift += sources::of_surfaces(problem);
-        }
+    fn end_multipath(&mut self) {
         self.light.find_active();
         self.balance.escaped += self.lost[0];
         self.balance.back_face += self.lost[1];

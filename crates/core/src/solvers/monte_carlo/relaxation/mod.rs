@@ -151,7 +151,13 @@ impl Relaxation {
         };
         self.pieces_absorbed = 0;
         self.lost = [0.0; 2];
-        self.draw.pieces() > 0
+        let anything = self.draw.pieces() > 0;
+        if stage.is_multipath() && anything {
+            // It leaves share by share; on average all of it has left with the last line.
+            self.adrift += self.shot;
+            self.light.spend_unshot();
+        }
+        anything
     }
 
     fn rays_of_step(&self, stage: Stage, experience: &Experience) -> u64 {
