@@ -45,8 +45,8 @@ pub fn methods() -> Vec<Trial> {
     named.chain(variants.map(|(name, method)| Trial { name: name.to_owned(), method })).collect()
 }
 
-/// What is no method, for its mean is not the solution: regular power shooting, which averages iterations that lack light. It keeps its
-/// books, repeats its bits and comes to an end as all others do.
+/// What is no method, for its mean is not the solution: regular power shooting, which averages iterations that lack light. It
+/// keeps its books, repeats its bits and comes to an end as all others do.
 pub fn regular() -> Vec<Trial> {
     let order = "regular".parse().expect("an order of the table");
     let of = |lines: Lines| Trial {
@@ -73,8 +73,8 @@ pub fn with_sequences(trials: Vec<Trial>) -> impl Iterator<Item = Trial> {
 
 /// Whether the mean over many runs is the exact solution. It is not where light leaves with a later point of the sequence that
 /// brought it, for the points of one sequence avoid each other: the counters of elements run on over steps, and multipath sends
-/// light along one line after the other. With random numbers it is. Keller's walks end a particle's share too early, and regular
-/// power shooting is behind.
+/// light along one line after the other. With random numbers it is. Keller's walks end a particle's share too early, and
+/// regular power shooting is behind.
 pub fn is_unbiased(method: &Method) -> bool {
     let runs_on = method.address == Address::PerElement;
     let multipath = method.order == OrderName::DEPTH_FIRST && method.lines == Lines::Global;

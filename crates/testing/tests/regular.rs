@@ -12,8 +12,8 @@ use isolux_testing::scenes::{problem, sphere_irradiance};
 
 const RHO: f64 = 0.8;
 
-/// Irradiances of a sphere of reflectivity `RHO` expected after so many averaged iterations. Each `F` leaves the same everywhere, so of
-/// direct light 1 iteration k brings `rho (1 + b)`, and `b` is the mean of what they bring.
+/// Irradiances of a sphere of reflectivity `RHO` expected after so many averaged iterations. Each `F` leaves the same
+/// everywhere, so of direct light 1 iteration k brings `rho (1 + b)`, and `b` is the mean of what they bring.
 fn expected(problem: &Problem, iterations: u32) -> Exact {
     let mut b = 0.0;
     for k in 1..=iterations {

@@ -1,7 +1,7 @@
 //! The axes of Monte Carlo radiosity: every algorithm of the survey is a choice on each (Bekaert, Cools & Willems 1999).
 //!
-//! Two axes are open and have tables of their own: the sample numbers, [`crate::sampling::SEQUENCES`], and the order in which landed
-//! light is shot again, [`super::orders::ORDERS`]. The address is in [`crate::sampling::address`].
+//! Two axes are open and have tables of their own: the sample numbers, [`crate::sampling::SEQUENCES`], and the order in which
+//! landed light is shot again, [`super::orders::ORDERS`]. The address is in [`crate::sampling::address`].
 
 /// An axis with its members.
 pub trait Axis: Copy + Sized + 'static {

@@ -8,8 +8,8 @@ use crate::solvers::Part;
 use std::fmt::Debug;
 use std::ops::Range;
 
-/// What every order can do. A complete solution starts again in the same memory. Its state is saved with the name of its type, so
-/// it is loaded whatever type that is.
+/// What every order can do. A complete solution starts again in the same memory. Its state is saved with the name of its type,
+/// so it is loaded whatever type that is.
 #[typetag::serde]
 pub trait CompleteSolution: Debug + Send + Sync {
     /// Starts an independent complete solution of about `rays` rays.

@@ -1,7 +1,7 @@
 //! Breadth first: all landed light is shot in the next step, until none is left (Shirley 1991).
 //!
-//! With the emitted power `D_0 = Pe`, step k shoots `D_k` and lands `D_(k+1) = rho F D_k`; the solution is the sum of all steps, and
-//! the rays of each are in proportion to what it shoots. Unbiased as every [`Relaxation`]. Cost: one ray a sample.
+//! With the emitted power `D_0 = Pe`, step k shoots `D_k` and lands `D_(k+1) = rho F D_k`; the solution is the sum of all
+//! steps, and the rays of each are in proportion to what it shoots. Unbiased as every [`Relaxation`]. Cost: one ray a sample.
 
 use super::Entry;
 use crate::sampling::address::Address;

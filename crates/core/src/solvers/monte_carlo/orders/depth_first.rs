@@ -1,9 +1,9 @@
 //! Depth first: light goes on as soon as it has landed.
 //!
-//! Along local lines that is the random walk, particle by particle ([`Walks`]). Along global lines it is multipath (Sbert, Pueyo,
-//! Neumann & Purgathofer 1996): what has landed on an element leaves with the next line that crosses it, and what still waits when the
-//! lines are used up is shot step by step. Whether it is biased is said there: [`Walks`], `relaxation/multipath.rs`. Cost: one
-//! ray a visit; one line for all the elements that it crosses.
+//! Along local lines that is the random walk, particle by particle ([`Walks`]). Along global lines it is multipath (Sbert,
+//! Pueyo, Neumann & Purgathofer 1996): what has landed on an element leaves with the next line that crosses it, and what still
+//! waits when the lines are used up is shot step by step. Whether it is biased is said there: [`Walks`],
+//! `relaxation/multipath.rs`. Cost: one ray a visit; one line for all the elements that it crosses.
 
 use super::Entry;
 use crate::Error;

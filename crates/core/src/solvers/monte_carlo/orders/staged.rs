@@ -1,8 +1,8 @@
 //! Shirley's sweep in stages, with a whole solution after each (Feda & Purgathofer 1993).
 //!
-//! Every sweep is a breadth-first solution of its own with twice the rays of the one before; the estimate is their mean, weighted with
-//! their rays. So there is something to look at soon, and no ray of it is wasted. Unbiased as every [`Relaxation`]. Cost: one
-//! ray a sample.
+//! Every sweep is a breadth-first solution of its own with twice the rays of the one before; the estimate is their mean,
+//! weighted with their rays. So there is something to look at soon, and no ray of it is wasted. Unbiased as every
+//! [`Relaxation`]. Cost: one ray a sample.
 
 use super::{Entry, breadth_first};
 use crate::sampling::address::Address;

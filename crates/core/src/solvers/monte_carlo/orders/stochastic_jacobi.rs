@@ -1,8 +1,8 @@
 //! Stochastic Jacobi radiosity: all landed light until none is left, then the whole once more, then gathering (Bekaert 1999).
 //!
-//! Incremental steps give a first solution, the regular iteration (Neumann et al. 1995) shoots all that it reflects, and the two are
-//! averaged by their rays. Along local lines further rays gather where shooting is noisy, on small elements, and the two are merged by
-//! their variances. Unbiased as every [`Relaxation`]. Cost: one ray a sample.
+//! Incremental steps give a first solution, the regular iteration (Neumann et al. 1995) shoots all that it reflects, and the
+//! two are averaged by their rays. Along local lines further rays gather where shooting is noisy, on small elements, and the
+//! two are merged by their variances. Unbiased as every [`Relaxation`]. Cost: one ray a sample.
 
 use super::Entry;
 use crate::sampling::address::Address;

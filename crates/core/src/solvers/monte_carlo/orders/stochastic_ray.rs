@@ -1,9 +1,8 @@
 //! Stochastic ray radiosity: the whole power in every iteration, and the mean over iterations (Neumann et al. 1995).
 //!
-//! Iteration k shoots all that surfaces reflect, `R_k = rho b_k`, beside direct light that is shot once, and lands
-//! `F (Pe + R_k)`. In the warm-up that takes the place of `b_k`; then it is averaged in, and each iteration shoots from the mean so
-//! far. Unbiased as every [`Relaxation`]: the warm-up lasts until as little is missing as others leave unshot. Cost: one ray a
-//! sample.
+//! Direct light `d = F Pe` is shot once. Each iteration shoots all that surfaces reflect, and `F rho (d + b)` lands: in the
+//! warm-up it takes the place of b, later it is averaged in, so that b is the mean so far. The solution is `d + b`. Unbiased as
+//! every [`Relaxation`]: the warm-up lasts until as little is missing as others leave unshot. Cost: one ray a sample.
 
 use super::Entry;
 use crate::sampling::address::Address;

@@ -28,10 +28,11 @@ pub enum Stage {
     Emission,
     /// Light leaves with every global line that crosses the element on which it has landed.
     Multipath { share: f64 },
-    /// Surfaces shoot what they have not shot yet, again and again. All steps have `share` together, each in proportion to what it
-    /// shoots; or each of them has it, if `every_step`.
+    /// Surfaces shoot what they have not shot yet, again and again. All steps have `share` together, each in proportion to what
+    /// it shoots; or each of them has it, if `every_step`.
     Incremental { share: f64, every_step: bool },
-    /// Surfaces shoot all they reflect; what lands takes the place of what had landed before, until hardly any light is missing.
+    /// Surfaces shoot all they reflect, until hardly any light is missing; what lands takes the place of what had landed
+    /// before.
     WarmUp { share: f64 },
     /// Surfaces shoot all they reflect, in so many iterations; what has landed is the mean over them.
     Averaged { share: f64, iterations: u32 },

@@ -1,9 +1,9 @@
 //! Relaxation: light is pooled on the elements, which shoot it step after step (Neumann et al. 1995; Bekaert 1999).
 //!
-//! Which steps there are, and with how many rays, is the order's affair: its [`Course`]. What a step shoots along which lines is in
-//! `step.rs`, what it leaves behind in `books.rs`. Unbiased with the address `per-iteration`, for a course without bias, but for the
-//! unshot power that is left at the end: at most 10^-6 of the emitted, unless hardly anything is absorbed (see [`plan`]); the
-//! balance reports it. A warm-up leaves as little.
+//! Which steps there are, and with how many rays, is the order's affair: its [`Course`]. What a step shoots along which lines
+//! is in `step.rs`, what it leaves behind in `books.rs`. Unbiased with the address `per-iteration`, for a course without bias,
+//! but for the unshot power that is left at the end: at most 10^-6 of the emitted, unless hardly anything is absorbed (see
+//! [`plan`]); the balance reports it. A warm-up leaves as little.
 
 mod books;
 mod course;

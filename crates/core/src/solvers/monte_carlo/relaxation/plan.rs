@@ -1,7 +1,7 @@
 //! How the rays of one complete solution are shared between its steps.
 //!
-//! Emission and reflection share the shooting rays by their expected power, so that all rays carry about the same. The stages share
-//! those of reflection as their course says.
+//! Emission and reflection share the shooting rays by their expected power, so that all rays carry about the same. The stages
+//! share those of reflection as their course says.
 
 use super::course::Stage;
 use crate::solvers::monte_carlo::{Experience, patience};
