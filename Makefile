@@ -2,12 +2,15 @@
 #   make demo    build isolux, light a room, leave picture, model and report in out/
 #   make test    every test
 #   make bench   speed of the ray kernel and of global lines
+#   make studies                  the nine published experiments in full: an hour
 #   make study-reference-rooms    real rooms against an independent renderer
 #   make study-methods            all methods on one scene, error and time
 
 ISOLUX = target/release/isolux
 
-.PHONY: demo test bench lint build study-reference-rooms study-methods
+STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count
+
+.PHONY: demo test bench lint build studies study-reference-rooms study-methods
 
 build:
 	cargo build --release --locked
@@ -30,6 +33,9 @@ bench:
 lint:
 	cargo fmt --all --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
+
+studies: build
+	for study in $(STUDIES); do $(ISOLUX) study $$study -o studies/$$study --progress || exit; done
 
 study-reference-rooms:
 	cargo run --release --locked -p isolux-testing --bin reference-rooms

@@ -148,8 +148,13 @@ fn panel(area: &Area, plot: &PlotSpec, name: &str, curves: &[Curve]) -> Result<(
         let end = if slope < 0.0 { x.start * (y.start / on(x.start).1).powf(1.0 / slope) } else { x.end };
         let line = [on(x.start), on(end.min(x.end))];
         chart.draw_series(DashedLineSeries::new(line, 2, 4, GUIDE.stroke_width(1))).map_err(text)?;
-        let side = if line[1].0 < x.end { HPos::Left } else { HPos::Right };
-        let style = (FONT, 12).into_font().color(&GUIDE).pos(Pos::new(side, VPos::Bottom));
+        // Beside the lower end of a line that leaves at the bottom; else under, or over, the end at the right.
+        let place = match (line[1].0 < x.end, slope < 0.0) {
+            (true, _) => Pos::new(HPos::Left, VPos::Bottom),
+            (false, true) => Pos::new(HPos::Right, VPos::Top),
+            (false, false) => Pos::new(HPos::Right, VPos::Bottom),
+        };
+        let style = (FONT, 12).into_font().color(&GUIDE).pos(place);
         let name = format!(" slope {} ", short(slope).replace('-', "−"));
         chart.draw_series([Text::new(name, line[1], style)]).map_err(text)?;
     }
