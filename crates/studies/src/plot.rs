@@ -145,12 +145,14 @@ fn panel(area: &Area, plot: &PlotSpec, name: &str, curves: &[Curve]) -> Result<(
     for &slope in &plot.guides {
         let start = places().filter(|place| place.x < x.start * 2.0).map(|place| place.y.mean).fold(0.0, f64::max);
         let on = |at: f64| (at, 0.8 * start * (at / x.start).powf(slope));
-        let end = if slope < 0.0 { x.start * (y.start / on(x.start).1).powf(1.0 / slope) } else { x.end };
+        let edge = if slope < 0.0 { y.start } else { y.end };
+        let end = x.start * (edge / on(x.start).1).powf(1.0 / slope);
         let line = [on(x.start), on(end.min(x.end))];
         chart.draw_series(DashedLineSeries::new(line, 2, 4, GUIDE.stroke_width(1))).map_err(text)?;
-        // Beside the lower end of a line that leaves at the bottom; else under, or over, the end at the right.
+        // Beside the end of a line that leaves at the bottom or top; else under, or over, the end at the right.
         let place = match (line[1].0 < x.end, slope < 0.0) {
-            (true, _) => Pos::new(HPos::Left, VPos::Bottom),
+            (true, true) => Pos::new(HPos::Left, VPos::Bottom),
+            (true, false) => Pos::new(HPos::Left, VPos::Top),
             (false, true) => Pos::new(HPos::Right, VPos::Top),
             (false, false) => Pos::new(HPos::Right, VPos::Bottom),
         };

@@ -6,17 +6,12 @@
 
 use super::{Measure, row};
 use crate::Error;
-use crate::bench::{Bench, Watch, single};
+use crate::bench::{Bench, Drive, Watch, single};
 use crate::results::Row;
 use crate::run::Point;
 use crate::spec::Spec;
-use isolux_core::solvers::{MonteCarlo, Part, Solver};
+use isolux_core::solvers::{MonteCarlo, Solver};
 use isolux_core::{Problem, Solution};
-use rayon::prelude::*;
-use std::ops::ControlFlow;
-
-/// Pieces computed at once.
-const PIECES: u64 = 64;
 
 pub struct WarmUp;
 
@@ -37,17 +32,19 @@ impl Measure for WarmUp {
         let problem = bench.problem(scene, scene.elements)?;
         let mut solver = MonteCarlo::new(&problem, single(method, point.at as u64, point.seed))?;
         let exact = reflected(&problem, |e| reference.on(e));
-        let mut rows = Vec::new();
-        while step(&mut solver, &problem, watch).is_continue() {
-            let solution = solver.solution(&problem);
-            let missing = (reflected(&problem, |e| lux(&solution, e)) / exact - 1.0).abs();
-            let error = reference.error(&problem, &solution);
-            rows.push(row(spec, point, (rows.len() + 1) as f64, vec![solution.work.rays as f64, missing, error]));
-            if solver.step().is_none() {
-                return Ok(Some(rows));
+        let (mut rows, mut drive) = (Vec::new(), Drive::new());
+        while drive.go_on(&mut solver, &problem) {
+            if watch("").is_break() {
+                return Ok(None);
+            }
+            if drive.is_between_steps() {
+                let solution = solver.solution(&problem);
+                let missing = (reflected(&problem, |e| lux(&solution, e)) / exact - 1.0).abs();
+                let error = reference.error(&problem, &solution);
+                rows.push(row(spec, point, (rows.len() + 1) as f64, vec![solution.work.rays as f64, missing, error]));
             }
         }
-        Ok(None)
+        Ok(Some(rows))
     }
 }
 
@@ -59,18 +56,4 @@ fn lux(solution: &Solution, e: u32) -> f64 {
 fn reflected(problem: &Problem, irradiance: impl Fn(u32) -> f64) -> f64 {
     let mesh = &problem.mesh;
     mesh.elements().map(|e| f64::from(mesh.area(e)) * mesh.reflectivity(e).luminance_f64() * irradiance(e)).sum()
-}
-
-/// Does one step; breaks if `watch` does.
-fn step(solver: &mut MonteCarlo, problem: &Problem, watch: &mut Watch) -> ControlFlow<()> {
-    let Some(pieces) = solver.step() else { return ControlFlow::Continue(()) };
-    let mut first = pieces.start;
-    while first < pieces.end {
-        let last = (first + PIECES).min(pieces.end);
-        let parts: Vec<Part> = (first..last).into_par_iter().map(|piece| solver.part(problem, piece)).collect();
-        parts.into_iter().for_each(|part| solver.absorb(problem, part));
-        first = last;
-        watch("")?;
-    }
-    ControlFlow::Continue(())
 }
