@@ -12,7 +12,7 @@ pub enum Error {
     #[error(transparent)]
     Io(#[from] isolux_io::Error),
 
-    /// A `study.toml` says something wrong.
+    /// A `study.toml`, or one of its series, says something wrong.
     #[error("study '{study}': {what}")]
     Spec { study: String, what: String },
 

@@ -2,7 +2,7 @@
 
 use crate::bench::Bench;
 use crate::report::{self, Report};
-use crate::results::Table;
+use crate::results::{Row, Table};
 use crate::spec::{SceneSpec, Spec};
 use crate::{Error, Study, machine, measures};
 use isolux_io::files::{self, OutputFile};
@@ -25,6 +25,13 @@ pub struct Point {
     pub series: usize,
     pub at: f64,
     pub seed: u64,
+}
+
+impl Point {
+    /// Expected work, in arbitrary units: it grows with what `at` counts.
+    fn work(&self) -> f64 {
+        self.at.max(1.0)
+    }
 }
 
 /// How far a run is.
@@ -74,13 +81,13 @@ pub fn run(
     let mut table = if path.exists() { Table::read(&path, measure.columns())? } else { Table::new(measure.columns()) };
     let is_done = |table: &Table, point: &Point| {
         let (scene, series) = (&spec.scenes[point.scene].name, &spec.series[point.series].name);
-        let same = |row: &crate::results::Row| row.scene == *scene && row.series == *series && row.seed == point.seed;
+        let same = |row: &Row| row.scene == *scene && row.series == *series && row.seed == point.seed;
         // A measure that follows a run has rows of its own places.
         table.rows.iter().any(|row| same(row) && (row.at == point.at || spec.at.len() == 1))
     };
     let left: Vec<Point> = points.iter().copied().filter(|point| !is_done(&table, point)).collect();
-    let cost = |points: &[Point]| points.iter().map(|point| measure_cost(&spec, point)).sum::<f64>().max(1e-9);
-    let (all, all_left) = (cost(&points), cost(&left));
+    let work_of = |points: &[Point]| points.iter().map(Point::work).sum::<f64>();
+    let (all, all_left) = (work_of(&points), work_of(&left));
     let mut bench = Bench::new(folder);
     let mut done = 0.0;
     for (k, point) in left.iter().enumerate() {
@@ -100,7 +107,7 @@ pub fn run(
         };
         table.rows.extend(rows);
         OutputFile::create(&path)?.finish(&table.to_csv())?;
-        done += measure_cost(&spec, point);
+        done += point.work();
     }
     Ok(Outcome::Complete(report::write(&spec, &table, folder)?))
 }
@@ -111,11 +118,6 @@ fn effective(study: Study, options: Options) -> Result<Spec, Error> {
     spec.scenes.retain(SceneSpec::is_there);
     spec.seeds = options.seeds.unwrap_or(spec.seeds).max(1);
     Ok(spec)
-}
-
-/// Expected work, in arbitrary units: what is measured at a place grows with it.
-fn measure_cost(_: &Spec, point: &Point) -> f64 {
-    point.at.max(1.0)
 }
 
 /// All points: scene by scene, and within one from the cheapest to the dearest, so that a run that is stopped has curves.

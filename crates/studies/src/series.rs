@@ -27,31 +27,31 @@ impl Series {
                 axis if OF_MEASURES.contains(&axis) => {}
                 "sequence" => method.sequence = value.parse()?,
                 "order" => method.order = value.parse()?,
-                Lines::NAME => method.lines = member(value)?,
-                Walk::NAME => method.walk = member(value)?,
-                Estimator::NAME => method.estimator = member(value)?,
-                Direction::NAME => method.direction = member(value)?,
-                Survival::NAME => method.survival = member(value)?,
-                FirstShot::NAME => method.first_shot = member(value)?,
-                _ => return Err(unknown("axis", axis)),
+                Lines::NAME => method.lines = self.member(value)?,
+                Walk::NAME => method.walk = self.member(value)?,
+                Estimator::NAME => method.estimator = self.member(value)?,
+                Direction::NAME => method.direction = self.member(value)?,
+                Survival::NAME => method.survival = self.member(value)?,
+                FirstShot::NAME => method.first_shot = self.member(value)?,
+                _ => return Err(self.unknown("axis", axis)),
             }
         }
         method.address = match self.axis("address") {
             Some(name) => Address::ALL
                 .into_iter()
                 .find(|address| address.name() == name)
-                .ok_or_else(|| unknown("address", name))?,
+                .ok_or_else(|| self.unknown("address", name))?,
             None => method.natural_address(),
         };
         method.check()?;
         Ok(method)
     }
-}
 
-fn member<A: Axis>(name: &str) -> Result<A, Error> {
-    A::named(name).ok_or_else(|| unknown(A::NAME, name))
-}
+    fn member<A: Axis>(&self, name: &str) -> Result<A, Error> {
+        A::named(name).ok_or_else(|| self.unknown(A::NAME, name))
+    }
 
-fn unknown(what: &str, name: &str) -> Error {
-    Error::Spec { study: String::new(), what: format!("there is no {what} '{name}'") }
+    fn unknown(&self, what: &str, name: &str) -> Error {
+        Error::Spec { study: self.name.clone(), what: format!("there is no {what} '{name}'") }
+    }
 }
