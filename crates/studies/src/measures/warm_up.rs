@@ -1,7 +1,7 @@
 //! `warm-up`: how a single complete solution gets from the first step to the last.
 //!
-//! `at` is the number of samples of the whole solution; each row has a place of its own: the number of the step after which the
-//! solution was looked at. `missing` is how much of the reflected power is not there yet, relative to all of it (its
+//! `at` is the number of samples of the whole solution; each row has a place of its own: how many sixty-fourths of them had been drawn,
+//! rounded up, after the last step before the next place. `missing` is how much of the reflected power is not there yet, relative to all of it (its
 //! absolute value, for noise adds some).
 
 use super::{Measure, row};
@@ -12,6 +12,9 @@ use crate::run::Point;
 use crate::spec::Spec;
 use isolux_core::solvers::{MonteCarlo, Solver};
 use isolux_core::{Problem, Solution};
+
+/// Places of a whole solution.
+const LOOKS: f64 = 64.0;
 
 pub struct WarmUp;
 
@@ -41,7 +44,10 @@ impl Measure for WarmUp {
                 let solution = solver.solution(&problem);
                 let missing = (reflected(&problem, |e| lux(&solution, e)) / exact - 1.0).abs();
                 let error = reference.error(&problem, &solution);
-                rows.push(row(spec, point, (rows.len() + 1) as f64, vec![solution.work.rays as f64, missing, error]));
+                let samples = solution.work.rays as f64;
+                let place = (samples / point.at * LOOKS - 0.01).ceil();
+                rows.pop_if(|row: &mut Row| row.at == place);
+                rows.push(row(spec, point, place, vec![samples, missing, error]));
             }
         }
         Ok(Some(rows))
