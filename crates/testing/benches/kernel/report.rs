@@ -20,8 +20,7 @@ pub enum Question {
 }
 
 impl Question {
-    pub const ALL: [Question; 4] =
-        [Question::Incoherent, Question::Sorted, Question::Shadow, Question::ShadowClosest];
+    pub const ALL: [Question; 4] = [Question::Incoherent, Question::Sorted, Question::Shadow, Question::ShadowClosest];
 
     fn name(self) -> &'static str {
         match self {
@@ -72,7 +71,9 @@ fn page(facts: &[Facts], home: &Path) -> Result<String> {
             let isolux = medians(home, &group, "isolux", ROUNDS)?;
             let portable = medians(home, &group, "isolux, portable", ROUNDS)?;
             let embree = if embree { medians(home, &group, "Embree", ROUNDS)? } else { Vec::new() };
-            let rate = |ns: &[f64]| if ns.is_empty() { String::new() } else { format!("{:.2}", RAYS as f64 * 1e3 / middle(ns)) };
+            let rate = |ns: &[f64]| {
+                if ns.is_empty() { String::new() } else { format!("{:.2}", RAYS as f64 * 1e3 / middle(ns)) }
+            };
             let ratios: Vec<f64> = embree.iter().zip(&isolux).map(|(embree, isolux)| embree / isolux).collect();
             let ratio = if ratios.is_empty() { String::new() } else { format!("**{:.2}**", middle(&ratios)) };
             let (name, triangles, question) = (scene.name, scene.triangles, question.name());
