@@ -26,7 +26,7 @@ const SCENES: [(&str, &str); 3] =
     [("cornell-box", "cornell-box"), ("office", "office"), ("office, 93 rows", "office:size=93")];
 
 /// Every contestant answers every question that many times.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 
 fn main() -> Result<()> {
     let mut criterion = Criterion::default()
