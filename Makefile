@@ -1,7 +1,8 @@
 # Everything a fresh machine with cargo needs.
 #   make demo    build isolux, light a room, leave picture, model and report in out/
 #   make test    every test
-#   make bench   speed of the ray kernel and of global lines
+#   make bench   speed of the ray kernel and of global lines, into docs/performance.md
+#                EMBREE=1 puts Embree beside it, which needs Debian's libembree-dev (apt-get install libembree-dev)
 #   make studies                  the nine published experiments in full: an hour
 #   make study-reference-rooms    real rooms against an independent renderer
 #   make study-methods            all methods on one scene, error and time
@@ -28,7 +29,8 @@ test:
 	cargo test --release --locked --workspace
 
 bench:
-	cargo bench --locked -p isolux-core --bench kernel --bench lines
+	BENCH_REPORT=$(CURDIR)/docs/performance.md BENCH_DATE=$$(date +%F) CRITERION_HOME=$(CURDIR)/target/criterion \
+	cargo bench --locked --workspace $(if $(EMBREE),--features isolux-testing/embree) --bench kernel --bench lines
 
 lint:
 	cargo fmt --all --check

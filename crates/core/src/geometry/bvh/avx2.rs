@@ -15,6 +15,15 @@ pub struct Avx2(());
 impl Instructions for Avx2 {
     type Boxes = F32x8;
     type Triangles = F32x4;
+
+    #[inline(always)]
+    fn prefetch<T>(value: &T) {
+        let lines = std::ptr::from_ref(value).cast::<[i8; 64]>();
+        for line in 0..size_of::<T>().div_ceil(64) {
+            // SAFETY: a prefetch reads nothing, whatever the address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(lines.wrapping_add(line).cast()) };
+        }
+    }
 }
 
 impl Avx2 {

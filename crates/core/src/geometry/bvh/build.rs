@@ -1,32 +1,14 @@
-//! Builds the tree: parallel locally ordered clustering into a binary tree (Meister & Bittner 2018) improved by
-//! reinsertion (Meister & Bittner 2018b), both by the crate `obvhs`; then nodes are merged until each has eight children,
-//! opening the child of largest surface first (Wald, Benthin & Boulos 2008).
+//! Builds the tree: a binary tree over the triangles (`binary.rs`) is turned into one of eight children a node (`plan.rs`).
 //!
 //! The builder sees the triangles scaled into the unit cube, so that areas neither overflow nor vanish, and gives the shape
-//! of the tree only. It runs serially, because its parallel sorts leave equal keys in an order that depends on the number of
-//! threads. The boxes are computed here from the triangles themselves.
+//! of the tree only. The boxes are computed here from the triangles themselves.
 
-use super::node::{Child, LEAF_SIZE, Leaf, Node, Tree, WIDTH};
+use super::binary;
+use super::node::{Child, Leaf, Node, Tree, WIDTH};
+use super::plan::Plan;
+use super::split::Item;
 use glam::{DVec3, Vec3};
-use obvhs::{
-    BvhBuildParams,
-    aabb::Aabb,
-    bvh2::{Bvh2, builder::build_bvh2},
-    ploc::{PlocSearchDistance, SortPrecision},
-};
-
-/// A million triangles take one to two seconds; the slowest settings take seven and gain a few percent of the ray rate.
-const SETTINGS: BvhBuildParams = BvhBuildParams {
-    pre_split: false,
-    ploc_search_distance: PlocSearchDistance::Medium,
-    search_depth_threshold: 3,
-    reinsertion_batch_ratio: 0.05,
-    post_collapse_reinsertion_batch_ratio_multiplier: 2.0,
-    sort_precision: SortPrecision::U64,
-    max_prims_per_leaf: LEAF_SIZE as u32,
-    // In units of a triangle test: four triangles cost as much as one, so leaves had better be full.
-    collapse_traversal_cost: 3.0,
-};
+use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
 /// The tree over `triangles`, those with coordinates that are not finite left out.
 pub fn tree(triangles: &[[Vec3; 3]]) -> Tree {
@@ -35,10 +17,10 @@ pub fn tree(triangles: &[[Vec3; 3]]) -> Tree {
     let bounds = numbers.iter().map(|&k| bounds(&triangles[k as usize])).fold(NOTHING, union);
     // In small scenes a chain does no harm, and chance would spoil the symmetry of rooms made of a few boxes.
     let size = if numbers.len() < 1000 { 0.0 } else { 4e-6 };
-    let unit = |&k: &u32| unit_box(&triangles[k as usize], bounds, size * scatter(k));
-    let boxes: Vec<Aabb> = numbers.iter().map(unit).collect();
-    let binary = build_bvh2(&boxes, SETTINGS, &mut Default::default());
-    Collapse { triangles, numbers: &numbers, binary: &binary, pad: padding(bounds) }.run()
+    let item = |k: u32| Item { bounds: unit_box(&triangles[k as usize], bounds, size * scatter(k)), number: k };
+    let mut items: Vec<Item> = numbers.iter().map(|&k| item(k)).collect();
+    let binary = binary::tree(&mut items);
+    Collapse { triangles, plan: Plan::new(&binary), binary: &binary, pad: padding(bounds) }.run()
 }
 
 type Bounds = (Vec3, Vec3);
@@ -79,9 +61,8 @@ fn padding((low, high): Bounds) -> f32 {
 /// A binary tree on its way to a wide one.
 struct Collapse<'a> {
     triangles: &'a [[Vec3; 3]],
-    /// Triangle of each primitive of the binary tree.
-    numbers: &'a [u32],
     binary: &'a Bvh2,
+    plan: Plan<'a>,
     pad: f32,
 }
 
@@ -112,17 +93,14 @@ impl Collapse<'_> {
         tree
     }
 
-    /// Descendants of a node of the binary tree that become the children of one wide node: at most eight.
+    /// The children of a wide node. Whether anything is in the way is asked of the last ones first: leaves, because they answer
+    /// at once, then what is met most often.
     fn children(&self, source: usize) -> Vec<usize> {
         let nodes = &self.binary.nodes;
-        let mut children = vec![source];
-        while children.len() < WIDTH {
-            let inner = (0..children.len()).filter(|&k| !nodes[children[k]].is_leaf());
-            let area = |k: usize| nodes[children[k]].aabb().half_area();
-            let Some(largest) = inner.max_by(|&a, &b| area(a).total_cmp(&area(b))) else { break };
-            let first = nodes[children.swap_remove(largest)].first_index as usize;
-            children.extend([first, first + 1]);
-        }
+        let mut children = self.plan.children(source);
+        let area = |child: usize| nodes[child].aabb().half_area();
+        let is_leaf = |child: usize| nodes[child].is_leaf();
+        children.sort_by(|&a, &b| is_leaf(a).cmp(&is_leaf(b)).then(area(a).total_cmp(&area(b))));
         children
     }
 
@@ -131,8 +109,7 @@ impl Collapse<'_> {
         let node = &self.binary.nodes[source];
         let (mut leaf, mut around) = (Leaf::EMPTY, NOTHING);
         for lane in 0..node.prim_count as usize {
-            let primitive = self.binary.primitive_indices[node.first_index as usize + lane];
-            let number = self.numbers[primitive as usize];
+            let number = self.binary.primitive_indices[node.first_index as usize + lane];
             let corners = self.triangles[number as usize];
             leaf.set_triangle(lane, number, corners);
             around = union(around, bounds(&corners));

@@ -28,4 +28,7 @@ pub trait Lanes<const N: usize>:
 pub trait Instructions {
     type Boxes: Lanes<WIDTH>;
     type Triangles: Lanes<LEAF_SIZE>;
+
+    /// Asks for the memory of `value`, which is going to be used soon.
+    fn prefetch<T>(value: &T);
 }

@@ -17,17 +17,20 @@
 //! neither the tree nor the order of traversal decides. All arithmetic is plain IEEE single precision without fused
 //! operations, so both paths, AVX2 and portable, give the same bits. (Fused products would also spoil the argument above.)
 //!
-//! Cost: about log8(triangles) nodes and a few leaves a ray; 75 bytes a triangle, and 36 for its corners. Distances are
+//! Cost: about log8(triangles) nodes and a few leaves a ray; about 70 bytes a triangle, and 36 for its corners. Distances are
 //! exact to a few roundings of the distance between origin and triangle over the cosine at which it is met. Cubes of
 //! distances must fit a float, so scenes may be from 1e-7 to 1e11 metres wide.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+mod binary;
 mod build;
 mod intersect;
 mod lanes;
 mod node;
+mod plan;
 mod portable;
+mod split;
 #[cfg(test)]
 mod tests;
 mod traverse;

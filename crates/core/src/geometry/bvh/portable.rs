@@ -10,6 +10,9 @@ pub struct Portable;
 impl Instructions for Portable {
     type Boxes = Array<8>;
     type Triangles = Array<4>;
+
+    #[inline(always)]
+    fn prefetch<T>(_: &T) {}
 }
 
 #[derive(Clone, Copy)]

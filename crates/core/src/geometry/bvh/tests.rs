@@ -116,6 +116,16 @@ fn all_hits_are_those_of_brute_force_and_begin_with_the_closest() {
 }
 
 #[test]
+fn large_scenes_agree_with_brute_force() {
+    // More triangles than are clustered together.
+    let mut random = Random(12);
+    let scene = scene(&random.soup(70_000));
+    let rays = random.rays(200);
+    let (ours, exact) = (closest(&Bvh::new(&scene), &rays), closest(&Brute::new(&scene), &rays));
+    assert!(ours.iter().zip(&exact).all(|(a, b)| a.t == b.t || (a.t - b.t).abs() < 2e-6));
+}
+
+#[test]
 fn something_is_in_the_way_exactly_within_the_closest_distance() {
     let mut random = Random(3);
     let (bvh, rays) = (Bvh::new(&scene(&random.soup(300))), random.rays(2000));

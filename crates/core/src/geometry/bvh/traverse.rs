@@ -79,6 +79,7 @@ fn closest_hit<I: Instructions>(tree: &Tree, ray: &Ray, stack: &mut [Waiting]) -
         } else {
             let node = &tree.nodes[child.index()];
             let (enter, mask) = tracer.enter(node, best.t);
+            bits(mask).for_each(|k| prefetch::<I>(tree, node.children[k]));
             nearest(node, &enter, mask, stack, &mut waiting)
         };
         // Boxes entered at the distance of the best hit may hold an equal one of lower number.
@@ -159,10 +160,21 @@ fn visit<I: Instructions>(
         } else {
             let node = &tree.nodes[child.index()];
             for k in bits(tracer.enter(node, reach).1) {
+                prefetch::<I>(tree, node.children[k]);
                 stack[waiting] = node.children[k];
                 waiting += 1;
             }
         }
     }
     false
+}
+
+/// Asks for the memory of a child, which is going to be visited soon: fetching it takes longer than several nodes.
+#[inline(always)]
+fn prefetch<I: Instructions>(tree: &Tree, child: Child) {
+    if child.is_leaf() {
+        I::prefetch(&tree.leaves[child.index()]);
+    } else {
+        I::prefetch(&tree.nodes[child.index()]);
+    }
 }
