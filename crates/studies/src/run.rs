@@ -126,7 +126,8 @@ fn points(spec: &Spec) -> Vec<Point> {
     for scene in 0..spec.scenes.len() {
         for &at in &spec.at {
             for seed in 1..=spec.seeds {
-                let measured = |series: &usize| spec.series[*series].up_to.is_none_or(|last| at <= last);
+                let within = |last: Option<f64>| last.is_none_or(|last| at <= last);
+                let measured = |series: &usize| within(spec.series[*series].up_to) && within(spec.scenes[scene].up_to);
                 let series = (0..spec.series.len()).filter(measured);
                 points.extend(series.map(|series| Point { scene, series, at, seed }));
             }

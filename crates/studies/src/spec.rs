@@ -52,8 +52,8 @@ impl From<Leaving> for transport::Leaving {
     }
 }
 
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SceneSpec {
     /// As plots call it.
     pub name: String,
@@ -62,6 +62,8 @@ pub struct SceneSpec {
     pub elements: u64,
     /// Irradiance [lux] on all elements, where it is known.
     pub exact: Option<f64>,
+    /// The last place where anything is measured in it.
+    pub up_to: Option<f64>,
 }
 
 /// A curve of a plot.
@@ -164,7 +166,9 @@ impl Spec {
 
     /// Whether a point of both is measured in the same way; plots, signs and where they measure may differ.
     pub fn measures_as(&self, other: &Spec) -> bool {
-        let common = |scene: &SceneSpec| other.scenes.iter().all(|known| known.name != scene.name || known == scene);
+        let same = |a: &SceneSpec, b: &SceneSpec| (&a.scene, a.elements, a.exact) == (&b.scene, b.elements, b.exact);
+        let common =
+            |scene: &SceneSpec| other.scenes.iter().all(|known| known.name != scene.name || same(known, scene));
         let agrees =
             |series: &Series| other.series.iter().all(|known| known.name != series.name || known.axes == series.axes);
         let what = |spec: &Spec| (spec.measure.clone(), spec.reference_rays, spec.leaving);

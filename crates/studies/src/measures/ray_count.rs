@@ -17,6 +17,8 @@ use isolux_core::solvers::monte_carlo::{MonteCarlo, Settings};
 
 /// Complete solutions whose spread is measured.
 const RUNS: u32 = 32;
+/// What takes more rays than this altogether is left out.
+const MOST_RAYS: f64 = 1e9;
 
 pub struct RayCount;
 
@@ -36,6 +38,9 @@ impl Measure for RayCount {
         let problem = bench.problem(scene, scene.elements)?;
         let left_out = if series.axis("worst-tenth") == Some("left-out") { 0.1 } else { 0.0 };
         let rays = (point.at * budget::heuristic(&problem.mesh, left_out)).ceil();
+        if rays * f64::from(RUNS) > MOST_RAYS {
+            return Ok(Some(Vec::new()));
+        }
         let settings = single(series.method()?, rays as u64 * u64::from(RUNS), point.seed);
         let settings = Settings { replicates: RUNS, ..settings };
         let Some(solution) = solve(&mut MonteCarlo::new(&problem, settings)?, &problem, "", watch) else {
