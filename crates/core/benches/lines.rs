@@ -1,106 +1,130 @@
-//! Crossings per second of global lines on one core: `cargo bench -p isolux-core --bench lines`.
+//! Crossings per second of global lines on one core: `cargo bench -p isolux-core --bench lines`, with names of scenes for only these.
 //!
-//! Lines are traced for all their hits; bundles of 512 x 512 parallel lines are rasterised. "crossings" stops there, "spans" goes
-//! on to the elements at their ends. Figures are medians of five rounds; nothing is judged.
+//! Lines are traced for all their hits; bundles of parallel lines are rasterised, on grids as fine as the rule of
+//! [`bundle_gather`] makes them. "hits" stops at the triangles, "crossings" finds the elements on both sides, "gather" also adds
+//! up what they see, and "spans" says who sees whom. All count crossings of surfaces. Figures are medians of five interleaved rounds;
+//! nothing is judged.
 #![allow(clippy::print_stdout)]
 
-use isolux_core::geometry::{HitLists, Ray, raster::Raster, raster::grid::Grid};
+use isolux_core::geometry::raster::{Raster, grid::Grid};
+use isolux_core::geometry::{HitLists, Ray};
+use isolux_core::math::Rgb;
 use isolux_core::math::warp::square_to_sphere;
 use isolux_core::mesh::Resolution;
-use isolux_core::sampling::{OwenSobol, Sequence};
+use isolux_core::sampling::{OwenSobol, Sample, Sequence};
 use isolux_core::scene::builtin::builtin;
-use isolux_core::transport::{Bundle, global_line};
+use isolux_core::scene::{Scene, Triangle, Vertex};
+use isolux_core::transport::bundle_gather::{Source, Sums, gather, grid_cells};
+use isolux_core::transport::{Bundle, bundle, global_line};
 use isolux_core::{Error, Problem};
 use std::hint::black_box;
 use std::time::Instant;
 
-const LINES: u64 = 1 << 18;
-const CELLS: u32 = 512;
-const BUNDLES: u64 = 4;
+const LINES: u64 = 1 << 16;
+const BUNDLES: usize = 4;
+const ROUNDS: usize = 5;
 
 fn main() -> Result<(), Error> {
+    let asked: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
     println!("Million crossings per second on one core\n");
-    println!("| scene | triangles | lines: crossings | lines: spans | bundles: crossings | bundles: spans |");
-    println!("|---|---|---|---|---|---|");
-    for name in ["cubes", "office"] {
-        let problem = Problem::new(builtin(name)?, Resolution::Elements(100_000))?;
-        let rates = [traced(&problem), lines(&problem), rasterised(&problem), bundles(&problem)];
-        let [traced, lines, rasterised, bundles] = rates.map(|rate| format!("{rate:.1}"));
-        let triangles = problem.scene.triangles.len();
-        println!("| {name} | {triangles} | {traced} | {lines} | {rasterised} | {bundles} |");
+    println!("| scene | triangles | elements | cells | rays: hits | bundles: hits | crossings | gather | spans |");
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for (name, scene) in [("cornell-box", builtin("cornell-box")?), ("office", builtin("office")?), ("million", million()?)] {
+        if !asked.is_empty() && !asked.iter().any(|asked| asked == name) {
+            continue;
+        }
+        let problem = Problem::new(scene, Resolution::Elements(200_000))?;
+        let cells = grid_cells(&problem, u64::MAX);
+        let rates = rates(&problem, cells).map(|rate| format!("{rate:.1}")).join(" | ");
+        let (triangles, elements) = (problem.scene.triangles.len(), problem.mesh.len());
+        println!("| {name} | {triangles} | {elements} | {cells} | {rates} |");
     }
     Ok(())
 }
 
-fn traced(problem: &Problem) -> f64 {
+/// The office with every triangle cut into 25: 900,000 triangles.
+fn million() -> Result<Scene, Error> {
+    const N: u32 = 5;
+    let mut scene = builtin("office")?;
+    let coarse = std::mem::take(&mut scene.triangles);
+    let corners: Vec<Vertex> = std::mem::take(&mut scene.vertices);
+    for triangle in coarse {
+        let [a, b, c] = triangle.vertices.map(|v| corners[v as usize].position);
+        let first = scene.vertices.len() as u32;
+        for (i, j) in (0..=N).flat_map(|i| (0..=N - i).map(move |j| (i, j))) {
+            let [u, v] = [i, j].map(|k| k as f32 / N as f32);
+            scene.vertices.push(Vertex::at(a + u * (b - a) + v * (c - a)));
+        }
+        let at = |i: u32, j: u32| first + i * (N + 1) - i * i.saturating_sub(1) / 2 + j;
+        for (i, j) in (0..N).flat_map(|i| (0..N - i).map(move |j| (i, j))) {
+            scene.triangles.push(Triangle { vertices: [at(i, j), at(i + 1, j), at(i, j + 1)], ..triangle });
+            if i + j + 2 <= N {
+                scene.triangles.push(Triangle { vertices: [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)], ..triangle });
+            }
+        }
+    }
+    Ok(scene)
+}
+
+/// Millions of crossings a second of each way, medians.
+fn rates(problem: &Problem, cells: u32) -> [f64; 5] {
+    let mut samples = [[0.0; 4]; BUNDLES];
+    OwenSobol::new(1).fill(bundle::STREAM, 0, &mut samples);
+    let source = Source::new(problem, |_| Rgb::WHITE);
+    let mut sums = Sums::new(problem);
+    let crossings = rasterised(problem, &samples, cells);
+    let mut rounds = [[0.0; ROUNDS]; 5];
+    for round in 0..ROUNDS {
+        let per_second = |crossings: usize, start: Instant| crossings as f64 * 1e-6 / start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let traced = traced(problem);
+        rounds[0][round] = per_second(traced, start);
+        let start = Instant::now();
+        black_box(rasterised(problem, &samples, cells));
+        rounds[1][round] = per_second(crossings, start);
+        let start = Instant::now();
+        each_bundle(problem, &samples, cells, |bundle| bundle.lines(0..bundle.tiles(), |line| _ = black_box(line)));
+        rounds[2][round] = per_second(crossings, start);
+        let start = Instant::now();
+        each_bundle(problem, &samples, cells, |bundle| gather(bundle, &source, &mut sums));
+        rounds[3][round] = per_second(crossings, start);
+        let start = Instant::now();
+        each_bundle(problem, &samples, cells, |bundle| bundle.spans(0..bundle.tiles(), |span| _ = black_box(span)));
+        rounds[4][round] = per_second(crossings, start);
+    }
+    rounds.map(|mut rates| {
+        rates.sort_by(f64::total_cmp);
+        rates[ROUNDS / 2]
+    })
+}
+
+fn traced(problem: &Problem) -> usize {
     let mut samples = vec![[0.0; 4]; LINES as usize];
     OwenSobol::new(1).fill(0, 0, &mut samples);
     let sphere = problem.geometry.bounding_sphere();
     let rays: Vec<Ray> = samples.iter().map(|&sample| global_line::ray(sample, sphere)).collect();
-    let mut lists = HitLists::default();
-    millions_per_second(|| {
-        let mut crossings = 0;
-        for batch in rays.chunks(512) {
-            problem.geometry.all(batch, &mut lists);
-            crossings += lists.iter().map(<[_]>::len).sum::<usize>();
+    let (mut crossings, mut lists) = (0, HitLists::default());
+    for batch in rays.chunks(512) {
+        problem.geometry.all(batch, &mut lists);
+        crossings += lists.iter().map(<[_]>::len).sum::<usize>();
+    }
+    crossings
+}
+
+fn rasterised(problem: &Problem, samples: &[Sample], cells: u32) -> usize {
+    let mut crossings = 0;
+    for &[x1, x2, x3, x4] in samples {
+        let direction = square_to_sphere([x1, x2].into()).normalize();
+        let grid = Grid::new(problem.geometry.bounding_sphere(), direction, [x3, x4].into(), cells);
+        let raster = Raster::of(&problem.scene, grid);
+        for tile in 0..grid.tiles() {
+            crossings += raster.hits(tile).iter().map(<[_]>::len).sum::<usize>();
         }
-        crossings
-    })
+    }
+    crossings
 }
 
-fn lines(problem: &Problem) -> f64 {
-    millions_per_second(|| {
-        let mut spans = 0;
-        global_line::trace(problem, &OwenSobol::new(1), 0..LINES, |span| {
-            black_box(span);
-            spans += 1;
-        });
-        spans
-    })
-}
-
-fn rasterised(problem: &Problem) -> f64 {
-    let scene = &problem.scene;
-    let mut samples = [[0.0; 4]; BUNDLES as usize];
-    OwenSobol::new(1).fill(0, 0, &mut samples);
-    millions_per_second(|| {
-        let mut crossings = 0;
-        for [x1, x2, x3, x4] in samples {
-            let direction = square_to_sphere([x1, x2].into()).normalize();
-            let grid = Grid::new(problem.geometry.bounding_sphere(), direction, [x3, x4].into(), CELLS);
-            let raster = Raster::new(grid, (0..scene.triangles.len() as u32).map(|t| scene.corners(t)));
-            for tile in 0..grid.tiles() {
-                crossings += raster.crossings(tile).iter().map(<[_]>::len).sum::<usize>();
-            }
-        }
-        crossings
-    })
-}
-
-fn bundles(problem: &Problem) -> f64 {
-    millions_per_second(|| {
-        let mut spans = 0;
-        for number in 0..BUNDLES {
-            let Ok(bundle) = Bundle::nth(problem, &OwenSobol::new(1), number, CELLS) else { continue };
-            for tile in 0..bundle.tiles() {
-                bundle.spans(tile, |span| {
-                    black_box(span);
-                    spans += 1;
-                });
-            }
-        }
-        spans
-    })
-}
-
-/// Median over five runs of how many millions of things `run` makes in a second.
-fn millions_per_second(mut run: impl FnMut() -> usize) -> f64 {
-    let mut rates: Vec<f64> = (0..5)
-        .map(|_| {
-            let start = Instant::now();
-            run() as f64 * 1e-6 / start.elapsed().as_secs_f64()
-        })
-        .collect();
-    rates.sort_by(f64::total_cmp);
-    rates[2]
+fn each_bundle(problem: &Problem, samples: &[Sample], cells: u32, mut each: impl FnMut(&Bundle)) {
+    let bundles = samples.iter().filter_map(|&sample| Bundle::new(problem, sample, cells).ok());
+    bundles.for_each(|bundle| each(&bundle));
 }

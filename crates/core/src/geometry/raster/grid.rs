@@ -5,7 +5,7 @@
 //! grid as a whole, so every point of the plane over the sphere is as likely to lie on a line as any other, and there are `1
 //! / h²` lines a square metre.
 
-use super::cover::{Projected, SUBCELLS};
+use super::cover::{Point, SUBCELLS};
 use crate::geometry::Ray;
 use crate::math::Frame;
 use glam::{Vec2, Vec3};
@@ -55,20 +55,22 @@ impl Grid {
         Ray::whole_line(point, self.direction(), self.radius)
     }
 
-    /// A triangle as the grid sees it: in subcells across the lines, in metres from their origins along them.
-    pub fn project(&self, corners: [Vec3; 3]) -> Projected {
+    /// A point as the grid sees it: in subcells across the lines, in metres from their origins along them.
+    pub fn project(&self, point: Vec3) -> Point {
         let radius = f64::from(self.radius);
         let in_cells = f64::from(self.cells) / (2.0 * radius);
         let subcells = |along: f64, offset: f32| {
             let position = (along + radius) * in_cells - f64::from(offset);
-            (position.clamp(-2.0, f64::from(MOST_CELLS) + 2.0) * SUBCELLS as f64).round() as i32
+            // Half a subcell more, and what lies behind the point is cut off; the two cells keep that positive.
+            let beyond = (position + 2.0).clamp(0.0, f64::from(MOST_CELLS) + 4.0);
+            (beyond * SUBCELLS as f64 + 0.5) as i32 - 2 * SUBCELLS as i32
         };
         let [x, y, z] = [self.frame.x, self.frame.y, self.frame.z].map(|axis| axis.as_dvec3());
-        let relative = corners.map(|corner| corner.as_dvec3() - self.center.as_dvec3());
-        Projected {
-            x: relative.map(|p| subcells(p.dot(x), self.offset.x)),
-            y: relative.map(|p| subcells(p.dot(y), self.offset.y)),
-            depth: relative.map(|p| (p.dot(z) + radius * f64::from(Ray::LEAD)) as f32),
+        let relative = point.as_dvec3() - self.center.as_dvec3();
+        Point {
+            x: subcells(relative.dot(x), self.offset.x),
+            y: subcells(relative.dot(y), self.offset.y),
+            depth: (relative.dot(z) + radius * f64::from(Ray::LEAD)) as f32,
         }
     }
 
@@ -130,10 +132,12 @@ mod tests {
         let direction = Vec3::new(0.6, 0.0, -0.8);
         let grid = Grid::new((Vec3::new(1.0, 2.0, 3.0), 2.0), direction, Vec2::new(0.25, 0.75), 10);
         let line = grid.line(3, 8);
-        let projected = grid.project([0.0, 1.0, 4.0].map(|t| line.origin + t * direction));
-        assert!(projected.x.iter().all(|x| (i64::from(*x) - 3 * SUBCELLS).abs() <= 1), "{projected:?}");
-        assert!(projected.y.iter().all(|y| (i64::from(*y) - 8 * SUBCELLS).abs() <= 1), "{projected:?}");
-        assert!(projected.depth.iter().zip([0.0, 1.0, 4.0]).all(|(depth, t)| (depth - t).abs() < 1e-5));
+        for t in [0.0, 1.0, 4.0] {
+            let point = grid.project(line.origin + t * direction);
+            assert!((i64::from(point.x) - 3 * SUBCELLS).abs() <= 1, "{point:?}");
+            assert!((i64::from(point.y) - 8 * SUBCELLS).abs() <= 1, "{point:?}");
+            assert!((point.depth - t).abs() < 1e-5, "{point:?}");
+        }
         assert!((grid.cell_area() - 0.16).abs() < 1e-9);
     }
 }
