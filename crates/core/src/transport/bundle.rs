@@ -86,18 +86,19 @@ impl<'a> Bundle<'a> {
     /// Hands the spans of the lines of `tiles` to `each`, line by line.
     pub fn spans(&self, tiles: Range<u32>, mut each: impl FnMut(Span)) {
         let lift = self.problem.geometry.lift();
-        self.lines(tiles, |crossings| spans(lift, crossings.iter().copied(), &mut each));
-    }
-
-    /// Hands the crossings of each line of `tiles` to `each`, tile by tile and row by row.
-    pub fn lines(&self, tiles: Range<u32>, mut each: impl FnMut(&[Crossing])) {
         let mut found = TileLists::default();
         for tile in tiles {
-            match &self.raster {
-                Some(raster) => self.rasterise(raster, tile, &mut found),
-                None => self.trace(tile, &mut found.lists),
-            }
-            found.lists.iter().for_each(&mut each);
+            self.crossings(tile, &mut found);
+            found.lists.iter().for_each(|crossings| spans(lift, crossings.iter().copied(), &mut each));
+        }
+    }
+
+    /// Fills `found` with the crossings of the lines of `tile`, a list for each of its lines, row by row; no lists for a tile
+    /// that does not exist.
+    pub fn crossings(&self, tile: u32, found: &mut TileLists<Crossing>) {
+        match &self.raster {
+            Some(raster) => self.rasterise(raster, tile, found),
+            None => self.trace(tile, &mut found.lists),
         }
     }
 

@@ -15,8 +15,8 @@
 //! Source: Szirmay-Kalos & Purgathofer, Global ray-bundle tracing with hardware acceleration, EGWR 1998; the counted crossings are
 //! those of Sbert, EGWR 1993.
 
-use super::Bundle;
-use super::span::pairs;
+use super::{Bundle, Span, spans};
+use crate::geometry::raster::TileLists;
 use crate::math::Rgb;
 use crate::sampling::Sequence;
 use crate::{Error, Problem};
@@ -28,7 +28,7 @@ const BUNDLES_OF_PIECE: u64 = 4;
 /// Directions that are better than a finer grid.
 const LEAST_DIRECTIONS: f64 = 300.0;
 /// Crossings of a triangle by a bundle, in the mean.
-const CROSSINGS_OF_TRIANGLE: f64 = 5.0;
+const CROSSINGS_OF_TRIANGLE: f64 = 10.0;
 /// Least and most cells along the edge of a grid, if there are enough directions.
 const CELLS: [f64; 2] = [256.0, 1024.0];
 
@@ -87,16 +87,25 @@ pub fn gather(bundle: &Bundle, source: &Source, sums: &mut Sums) {
     // Ends without element have a row too, so that no crossing needs to be asked what it is.
     let nobody = source.len().min(sums.len()) as u32 - 1;
     let lift = bundle.problem().geometry.lift();
-    bundle.lines(0..bundle.tiles(), |crossings| {
-        pairs(lift, crossings.iter().copied(), |from, to| {
-            let [from, to] = [from, to].map(|end| end.or(nobody) as usize);
-            let mut see = |here: usize, there: usize| {
-                sums[here].iter_mut().zip(source[there]).for_each(|(sum, seen)| *sum += f64::from(seen));
-            };
-            see(from, to);
-            see(to, from);
-        });
-    });
+    let (mut found, mut seen) = (TileLists::default(), Vec::new());
+    for tile in 0..bundle.tiles() {
+        bundle.crossings(tile, &mut found);
+        // All pairs first, then all sums: the processor then waits for the memory of many elements at once.
+        seen.clear();
+        for crossings in found.lists.iter() {
+            spans(lift, crossings.iter().copied(), |Span { from, to }| seen.push([from.or(nobody), to.or(nobody)]));
+        }
+        for [from, to] in seen.iter().map(|ends| ends.map(|end| end as usize)) {
+            see(&mut sums[from], source[to]);
+            see(&mut sums[to], source[from]);
+        }
+    }
+}
+
+/// Adds what one crossing sees.
+#[inline]
+fn see(sum: &mut [f64; 4], seen: [f32; 4]) {
+    sum.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += f64::from(seen));
 }
 
 /// Gathers `bundles` of `sequence`, each a grid of `cells` by `cells` lines, with as many threads as there are. The result
@@ -136,7 +145,7 @@ pub fn samples_of_bundle(problem: &Problem, cells: u32) -> f64 {
 }
 
 /// Cells along the edge of the grids of bundles that shall have `samples` samples together: so many that a triangle is crossed
-/// five times, from 256 to 1024; but rather coarser than fewer than 300 directions.
+/// ten times, from 256 to 1024; but rather coarser than fewer than 300 directions.
 pub fn grid_cells(problem: &Problem, samples: u64) -> u32 {
     let cells_for = |of_bundle: f64| (of_bundle / samples_of_bundle(problem, 1)).sqrt();
     let fine = cells_for(CROSSINGS_OF_TRIANGLE * problem.scene.triangles.len() as f64);
@@ -162,7 +171,7 @@ mod tests {
         let fine = grid_cells(&furnished, many);
         assert!((257..=1024).contains(&fine));
         let triangles = furnished.scene.triangles.len() as f64;
-        assert!(fine == 1024 || (samples_of_bundle(&furnished, fine) / triangles - 5.0).abs() < 0.1);
+        assert!(fine == 1024 || (samples_of_bundle(&furnished, fine) / triangles - 10.0).abs() < 0.1);
         for problem in [&simple, &furnished] {
             let coarse = grid_cells(problem, 1_000_000);
             assert!((1_000_000.0 / samples_of_bundle(problem, coarse) / 300.0 - 1.0).abs() < 0.1, "{coarse}");

@@ -25,31 +25,24 @@ pub struct Span {
 /// order of their triangles. The line comes from the open and goes to the open.
 #[inline]
 pub fn spans(lift: f32, crossings: impl IntoIterator<Item = Crossing>, mut each: impl FnMut(Span)) {
-    pairs(lift, crossings, |from, to| {
+    let mut hand = |from: End, to: End| {
         if from.is_element() || to.is_element() {
             each(Span { from, to });
         }
-    });
-}
-
-/// As [`spans`], with the pairs of ends neither of which is an element.
-#[inline]
-pub fn pairs(lift: f32, crossings: impl IntoIterator<Item = Crossing>, mut each: impl FnMut(End, End)) {
-    let mut crossings = crossings.into_iter();
-    let Some(first) = crossings.next() else { return };
-    each(End::ESCAPED, first.near);
+    };
     // The crossing last met, and which of those within the lift of each other a line from the other side would meet.
-    let (mut last, mut seen_from_beyond) = (first.t, first);
+    let mut last = f32::NEG_INFINITY;
+    let mut seen_from_beyond = Crossing { t: last, near: End::ESCAPED, far: End::ESCAPED };
     for next in crossings {
         if next.t - last > lift {
-            each(seen_from_beyond.far, next.near);
+            hand(seen_from_beyond.far, next.near);
             seen_from_beyond = next;
         } else if next.t > seen_from_beyond.t {
             seen_from_beyond = next;
         }
         last = next.t;
     }
-    each(seen_from_beyond.far, End::ESCAPED);
+    hand(seen_from_beyond.far, End::ESCAPED);
 }
 
 #[cfg(test)]

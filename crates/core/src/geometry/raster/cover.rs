@@ -12,7 +12,8 @@
 //! triangles around a corner exactly one covers the corner. So a line meets a closed surface neither twice at one place nor
 //! never.
 //!
-//! Each edge bounds the covered points of a row on one side, by an integer division. Cost: three divisions a row.
+//! Each edge bounds the covered points of a row on one side, by an integer division. Cost: three divisions a row. Depth and
+//! barycentric coordinates are interpolated along the row.
 
 use glam::Vec2;
 use std::ops::Range;
@@ -93,19 +94,44 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Those of the `columns` of `row` that it covers.
+    /// What it covers of `row`, within these columns.
     #[inline]
-    pub fn columns(&self, row: u32, columns: &Range<u32>) -> Range<i64> {
+    pub fn row(&self, row: u32, columns: &Range<u32>) -> Row {
         let all = i64::from(columns.start)..i64::from(columns.end);
-        self.edges.iter().fold(all, |columns, edge| edge.clip(row, columns))
+        let covered = self.edges.iter().fold(all, |columns, edge| edge.clip(row, columns));
+        let [_, of_u, of_v] = &self.edges;
+        let weight = |edge: &Edge| edge.at(covered.start, row) as f32 * self.share;
+        let growth = |edge: &Edge| edge.per_column as f32 * self.share;
+        Row {
+            first: covered.start as u32,
+            length: (covered.end - covered.start).max(0) as u32,
+            start: [weight(of_u), weight(of_v)],
+            growth: [growth(of_u), growth(of_v)],
+            depth: self.depth,
+        }
     }
+}
 
-    /// Distance [m] at which the line of a covered point meets it, and the barycentric coordinates there.
-    #[inline]
-    pub fn at(&self, column: i64, row: u32) -> (f32, Vec2) {
-        let weight = |edge: &Edge| (edge.at(column, row) as f32 * self.share).min(1.0);
-        let u = weight(&self.edges[1]);
-        let v = weight(&self.edges[2]).min(1.0 - u);
+/// Neighbouring points of a row that a triangle covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Column of the first, and how many there are.
+    pub first: u32,
+    pub length: u32,
+    /// Barycentric coordinates of the first, and what they grow from one to the next.
+    start: [f32; 2],
+    growth: [f32; 2],
+    depth: [f32; 3],
+}
+
+impl Row {
+    /// Distance [m] at which the line of the k-th of the points meets the triangle, and the barycentric coordinates there.
+    #[inline(always)]
+    pub fn at(&self, k: u32) -> (f32, Vec2) {
+        let weight = |coordinate: usize| self.start[coordinate] + k as f32 * self.growth[coordinate];
+        // Rounding must not lead out of the triangle.
+        let u = weight(0).max(0.0).min(1.0);
+        let v = weight(1).max(0.0).min(1.0 - u);
         (self.depth[0] + u * self.depth[1] + v * self.depth[2], Vec2::new(u, v))
     }
 }
@@ -172,11 +198,12 @@ mod tests {
     /// The points in these ranges that a triangle covers, and the hits of their lines.
     fn hits(triangle: &Projected, [columns, rows]: [Range<u32>; 2]) -> Vec<(u32, u32, Hit)> {
         let Some(coverage) = triangle.coverage() else { return Vec::new() };
-        let hit = |column, row| {
-            let (t, uv) = coverage.at(column, row);
-            (column as u32, row, Hit { t, triangle: 0, uv, back: coverage.back })
+        let hits = |row| {
+            let covered = coverage.row(row, &columns);
+            let hit = move |(t, uv)| Hit { t, triangle: 0, uv, back: coverage.back };
+            (0..covered.length).map(move |k| (covered.first + k, row, hit(covered.at(k))))
         };
-        rows.flat_map(|row| coverage.columns(row, &columns).map(move |column| hit(column, row))).collect()
+        rows.flat_map(hits).collect()
     }
 
     /// How often each point of the grid is covered.

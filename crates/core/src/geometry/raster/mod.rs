@@ -35,7 +35,7 @@ pub struct Raster {
 /// The crossings of one tile: a list for each of its lines, row by row, and the working memory to make them.
 #[derive(Clone, Debug)]
 pub struct TileLists<T> {
-    /// Crossings in the order of triangles, each with the number of its line.
+    /// Crossings in the order of triangles, each with the number of its line, and beyond them what was there before.
     fragments: Vec<(u32, T)>,
     pub lists: Lists<T>,
 }
@@ -89,7 +89,7 @@ impl Raster {
         let [columns, rows] = self.grid.cells_of(tile);
         let width = columns.end - columns.start;
         let common = |a: Range<u32>, b: &Range<u32>| a.start.max(b.start)..a.end.min(b.end);
-        fragments.clear();
+        let mut count = 0;
         for &number in self.numbers_of(tile) {
             let triangle = &self.triangles[number as usize];
             let Some(coverage) = triangle.coverage() else { continue };
@@ -97,14 +97,21 @@ impl Raster {
             let [across, up] = triangle.bounds(self.grid.cells());
             let across = common(across, &columns);
             for row in common(up, &rows) {
-                let first = (row - rows.start) * width;
-                fragments.extend(coverage.columns(row, &across).map(|column| {
-                    let (t, uv) = coverage.at(column, row);
-                    (first + (column as u32 - columns.start), crossing(t, uv))
-                }));
+                let covered = coverage.row(row, &across);
+                let line = (row - rows.start) * width + covered.first - columns.start;
+                let (begin, end) = (count, count + covered.length as usize);
+                if end > fragments.len() {
+                    let (t, uv) = covered.at(0);
+                    fragments.resize(2 * end, (line, crossing(t, uv)));
+                }
+                for (k, fragment) in (0..).zip(&mut fragments[begin..end]) {
+                    let (t, uv) = covered.at(k);
+                    *fragment = (line + k, crossing(t, uv));
+                }
+                count = end;
             }
         }
-        lists.group((width * (rows.end - rows.start)) as usize, fragments);
+        lists.group((width * (rows.end - rows.start)) as usize, &fragments[..count]);
     }
 
     /// The hits of the lines of `tile`, as rays would have them.
