@@ -16,6 +16,13 @@ impl Along for Hit {
     }
 }
 
+/// Numbers in lists of their own, as those of the triangles around each of many lines.
+impl Along for u32 {
+    fn order(&self, other: &u32) -> Ordering {
+        self.cmp(other)
+    }
+}
+
 /// Lists of things along lines. Every finished list is in their order; equals are in the order in which they were given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lists<T> {
@@ -85,6 +92,12 @@ impl<T: Along> Lists<T> {
         self.ends.is_empty()
     }
 
+    /// List number `list`; empty if it does not exist.
+    pub fn get(&self, list: usize) -> &[T] {
+        let end_of = |list: usize| self.ends.get(list).map_or(self.items.len(), |&end| end as usize);
+        &self.items[list.checked_sub(1).map_or(0, end_of)..end_of(list)]
+    }
+
     /// The finished lists.
     pub fn iter(&self) -> impl Iterator<Item = &[T]> {
         let begins = std::iter::once(0).chain(self.ends.iter().copied());
@@ -123,6 +136,7 @@ mod tests {
             assert_eq!((grouped.len(), grouped.iter().map(<[Hit]>::len).sum::<usize>()), (3, few.saturating_sub(few / 5)));
         }
         assert_eq!(grouped, pushed);
+        assert_eq!([0, 1, 2, 3, 9].map(|list| grouped.get(list)), [lists[0], lists[1], lists[2], &[], &[]]);
     }
 
     /// Items of which some are equal, each with its number.

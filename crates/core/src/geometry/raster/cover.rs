@@ -44,6 +44,7 @@ impl Projected {
     const NOTHING: Projected = Projected { x: [1; 3], y: [1; 3], depth: [0.0; 3] };
 
     /// The triangle with these corners, or nothing if one of them is not finite.
+    #[inline]
     pub fn new(corners: [Point; 3]) -> Projected {
         let depth = corners.map(|corner| corner.depth);
         if !depth.iter().all(|depth| depth.is_finite()) {
@@ -53,6 +54,7 @@ impl Projected {
     }
 
     /// Columns and rows, of a grid of `cells` by `cells`, of the box around the triangle.
+    #[inline]
     pub fn bounds(&self, cells: u32) -> [Range<u32>; 2] {
         let range = |corners: [i32; 3]| {
             let [a, b, c] = corners.map(i64::from);
@@ -64,6 +66,7 @@ impl Projected {
     }
 
     /// Which points it covers; `None` if it is seen edge-on and covers none.
+    #[inline]
     pub fn coverage(&self) -> Option<Coverage> {
         let [a, b, c] = [0, 1, 2].map(|k| [i64::from(self.x[k]), i64::from(self.y[k])]);
         // Counter-clockwise in a frame that looks along the lines: they leave through the front.

@@ -93,12 +93,14 @@ impl Grid {
     }
 
     /// The tiles that some of these cells belong to.
+    #[inline]
     pub fn tiles_of(&self, [columns, rows]: [Range<u32>; 2]) -> impl Iterator<Item = u32> + use<> {
         let along = self.tiles_along_edge();
-        let tiles =
-            |cells: Range<u32>| if cells.is_empty() { 0..0 } else { cells.start / TILE..cells.end.div_ceil(TILE) };
-        let (columns, rows) = (tiles(columns), tiles(rows));
-        rows.flat_map(move |row| columns.clone().map(move |column| row * along + column))
+        let first = columns.start / TILE + rows.start / TILE * along;
+        let extent = |cells: &Range<u32>| cells.end.div_ceil(TILE).saturating_sub(cells.start / TILE);
+        let (width, height) = (extent(&columns), extent(&rows));
+        let none = columns.is_empty() || rows.is_empty();
+        (0..if none { 0 } else { width * height }).map(move |k| first + k % width + k / width * along)
     }
 
     fn tiles_along_edge(&self) -> u32 {

@@ -27,9 +27,8 @@ use std::ops::Range;
 pub struct Raster {
     grid: Grid,
     triangles: Vec<Projected>,
-    /// Numbers of the triangles that may cover points of a tile, tile by tile, and where those of each tile end.
-    numbers: Vec<u32>,
-    ends: Vec<usize>,
+    /// Numbers of the triangles that may cover points of each tile.
+    tiles: Lists<u32>,
 }
 
 /// The crossings of one tile: a list for each of its lines, row by row, and the working memory to make them.
@@ -49,24 +48,15 @@ impl Raster {
         triangles: impl Iterator<Item = [u32; 3]>,
     ) -> Raster {
         let points: Vec<Point> = vertices.map(|vertex| grid.project(vertex)).collect();
-        let corners = |vertices: [u32; 3]| vertices.map(|vertex| points[vertex as usize]);
-        let triangles: Vec<Projected> = triangles.map(|vertices| Projected::new(corners(vertices))).collect();
-        // A counting sort, as in Lists::group.
-        let tiles_of = |triangle: &Projected| grid.tiles_of(triangle.bounds(grid.cells()));
-        let mut ends = vec![0; grid.tiles() as usize];
-        triangles.iter().flat_map(tiles_of).for_each(|tile| ends[tile as usize] += 1);
-        let mut total = 0;
-        for end in &mut ends {
-            (*end, total) = (total, total + *end);
+        let mut projected = Vec::with_capacity(triangles.size_hint().0);
+        let (mut in_tiles, mut tiles) = (Vec::with_capacity(projected.capacity()), Lists::default());
+        for (number, vertices) in (0..).zip(triangles) {
+            let triangle = Projected::new(vertices.map(|vertex| points[vertex as usize]));
+            in_tiles.extend(grid.tiles_of(triangle.bounds(grid.cells())).map(|tile| (tile, number)));
+            projected.push(triangle);
         }
-        let mut numbers = vec![0; total];
-        for (number, triangle) in (0..).zip(&triangles) {
-            for tile in tiles_of(triangle) {
-                numbers[ends[tile as usize]] = number;
-                ends[tile as usize] += 1;
-            }
-        }
-        Raster { grid, triangles, numbers, ends }
+        tiles.group(grid.tiles() as usize, &in_tiles);
+        Raster { grid, triangles: projected, tiles }
     }
 
     /// The triangles of `scene`.
@@ -90,7 +80,7 @@ impl Raster {
         let width = columns.end - columns.start;
         let common = |a: Range<u32>, b: &Range<u32>| a.start.max(b.start)..a.end.min(b.end);
         let mut count = 0;
-        for &number in self.numbers_of(tile) {
+        for &number in self.tiles.get(tile as usize) {
             let triangle = &self.triangles[number as usize];
             let Some(coverage) = triangle.coverage() else { continue };
             let crossing = meet(number, coverage.back);
@@ -119,12 +109,6 @@ impl Raster {
         let mut found = TileLists::default();
         self.crossings(tile, |triangle, back| move |t, uv| Hit { t, triangle, uv, back }, &mut found);
         found.lists
-    }
-
-    fn numbers_of(&self, tile: u32) -> &[u32] {
-        let end_of = |tile: usize| self.ends.get(tile).copied().unwrap_or(self.numbers.len());
-        let tile = tile as usize;
-        &self.numbers[tile.checked_sub(1).map_or(0, end_of)..end_of(tile)]
     }
 }
 
