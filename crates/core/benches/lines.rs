@@ -29,7 +29,9 @@ fn main() -> Result<(), Error> {
     println!("Million crossings per second of processor time, on one thread\n");
     println!("| scene | triangles | elements | cells | rays: hits | bundles: hits | crossings | gather | spans |");
     println!("|---|---|---|---|---|---|---|---|---|");
-    for (name, scene) in [("cornell-box", builtin("cornell-box")?), ("office", builtin("office")?), ("million", million()?)] {
+    for (name, scene) in
+        [("cornell-box", builtin("cornell-box")?), ("office", builtin("office")?), ("million", million()?)]
+    {
         if !asked.is_empty() && !asked.iter().any(|asked| asked == name) {
             continue;
         }

@@ -133,7 +133,10 @@ mod tests {
         // Memory is used again, whatever was in it.
         for few in [5, 1, 0, 5] {
             grouped.group(3, &fragments[..few]);
-            assert_eq!((grouped.len(), grouped.iter().map(<[Hit]>::len).sum::<usize>()), (3, few.saturating_sub(few / 5)));
+            assert_eq!(
+                (grouped.len(), grouped.iter().map(<[Hit]>::len).sum::<usize>()),
+                (3, few.saturating_sub(few / 5))
+            );
         }
         assert_eq!(grouped, pushed);
         assert_eq!([0, 1, 2, 3, 9].map(|list| grouped.get(list)), [lists[0], lists[1], lists[2], &[], &[]]);

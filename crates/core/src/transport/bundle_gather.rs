@@ -193,7 +193,10 @@ mod tests {
     fn senseless_grids_are_refused() {
         let (problem, sequence) = (problem("box"), crate::sampling::OwenSobol::new(1));
         let source = Source::new(&problem, |_| Rgb::WHITE);
-        assert!(matches!(gather_all(&problem, &sequence, 0..9, 0, &source), Err(Error::Parameter { name: "cells", .. })));
+        assert!(matches!(
+            gather_all(&problem, &sequence, 0..9, 0, &source),
+            Err(Error::Parameter { name: "cells", .. })
+        ));
         assert_eq!(gather_all(&problem, &sequence, 5..5, 8, &source).unwrap(), Sums::new(&problem));
     }
 }

@@ -42,11 +42,7 @@ pub struct TileLists<T> {
 impl Raster {
     /// Projects triangles, given by the numbers of their corners among `vertices` [m]. Those with a coordinate that is not
     /// finite are never crossed.
-    pub fn new(
-        grid: Grid,
-        vertices: impl Iterator<Item = Vec3>,
-        triangles: impl Iterator<Item = [u32; 3]>,
-    ) -> Raster {
+    pub fn new(grid: Grid, vertices: impl Iterator<Item = Vec3>, triangles: impl Iterator<Item = [u32; 3]>) -> Raster {
         let points: Vec<Point> = vertices.map(|vertex| grid.project(vertex)).collect();
         let mut projected = Vec::with_capacity(triangles.size_hint().0);
         let (mut in_tiles, mut tiles) = (Vec::with_capacity(projected.capacity()), Lists::default());

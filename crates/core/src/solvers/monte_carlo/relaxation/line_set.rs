@@ -99,7 +99,8 @@ impl LineSet {
     pub fn collect(&self, problem: &Problem, sequence: &dyn Sequence, piece: u64) -> Part {
         let mut part = Part::default();
         self.for_spans(problem, sequence, piece, |span| part.spans.push(span));
-        part.rays = part.spans.iter().flat_map(|span| [span.from, span.to]).filter(|end| end.is_element()).count() as u64;
+        part.rays =
+            part.spans.iter().flat_map(|span| [span.from, span.to]).filter(|end| end.is_element()).count() as u64;
         part
     }
 
