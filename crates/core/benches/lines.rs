@@ -14,14 +14,16 @@ use isolux_core::mesh::Resolution;
 use isolux_core::sampling::{OwenSobol, Sample, Sequence};
 use isolux_core::scene::builtin::builtin;
 use isolux_core::scene::{Scene, Triangle, Vertex};
-use isolux_core::transport::bundle_gather::{Source, Sums, gather, grid_cells};
+use isolux_core::transport::bundle_gather::{Source, Sums, gather, grid_cells, samples_of_bundle};
 use isolux_core::transport::{Bundle, bundle, global_line};
 use isolux_core::{Error, Problem};
 use std::hint::black_box;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 const LINES: u64 = 1 << 16;
-const BUNDLES: usize = 4;
+/// Samples of the bundles of a round, and most bundles.
+const SAMPLES: f64 = 4e6;
+const BUNDLES: usize = 64;
 const ROUNDS: usize = 5;
 
 fn main() -> Result<(), Error> {
@@ -70,7 +72,8 @@ fn million() -> Result<Scene, Error> {
 
 /// Millions of crossings a second of each way, medians.
 fn rates(problem: &Problem, cells: u32) -> [f64; 5] {
-    let mut samples = [[0.0; 4]; BUNDLES];
+    let bundles = (SAMPLES / samples_of_bundle(problem, cells)).ceil() as usize;
+    let mut samples = vec![[0.0; 4]; bundles.min(BUNDLES)];
     OwenSobol::new(1).fill(bundle::STREAM, 0, &mut samples);
     let source = Source::new(problem, |_| Rgb::WHITE);
     let mut sums = Sums::new(problem);

@@ -97,21 +97,24 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// What it covers of `row`, within these columns.
+    /// What it covers of `row`, within these columns, if it is anything.
     #[inline]
-    pub fn row(&self, row: u32, columns: &Range<u32>) -> Row {
+    pub fn row(&self, row: u32, columns: &Range<u32>) -> Option<Row> {
         let all = i64::from(columns.start)..i64::from(columns.end);
         let covered = self.edges.iter().fold(all, |columns, edge| edge.clip(row, columns));
+        if covered.is_empty() {
+            return None;
+        }
         let [_, of_u, of_v] = &self.edges;
         let weight = |edge: &Edge| edge.at(covered.start, row) as f32 * self.share;
         let growth = |edge: &Edge| edge.per_column as f32 * self.share;
-        Row {
+        Some(Row {
             first: covered.start as u32,
-            length: (covered.end - covered.start).max(0) as u32,
+            length: (covered.end - covered.start) as u32,
             start: [weight(of_u), weight(of_v)],
             growth: [growth(of_u), growth(of_v)],
             depth: self.depth,
-        }
+        })
     }
 }
 
@@ -202,9 +205,10 @@ mod tests {
     fn hits(triangle: &Projected, [columns, rows]: [Range<u32>; 2]) -> Vec<(u32, u32, Hit)> {
         let Some(coverage) = triangle.coverage() else { return Vec::new() };
         let hits = |row| {
-            let covered = coverage.row(row, &columns);
             let hit = move |(t, uv)| Hit { t, triangle: 0, uv, back: coverage.back };
-            (0..covered.length).map(move |k| (covered.first + k, row, hit(covered.at(k))))
+            let covered = coverage.row(row, &columns).into_iter();
+            covered
+                .flat_map(move |covered| (0..covered.length).map(move |k| (covered.first + k, row, hit(covered.at(k)))))
         };
         rows.flat_map(hits).collect()
     }

@@ -55,22 +55,29 @@ impl Grid {
         Ray::whole_line(point, self.direction(), self.radius)
     }
 
-    /// A point as the grid sees it: in subcells across the lines, in metres from their origins along them.
-    pub fn project(&self, point: Vec3) -> Point {
+    /// The map to points as the grid sees them: in subcells across the lines, in metres from their origins along them.
+    pub fn projection(&self) -> impl Fn(Vec3) -> Point + use<> {
         let radius = f64::from(self.radius);
-        let in_cells = f64::from(self.cells) / (2.0 * radius);
-        let subcells = |along: f64, offset: f32| {
-            let position = (along + radius) * in_cells - f64::from(offset);
-            // Half a subcell more, and what lies behind the point is cut off; the two cells keep that positive.
-            let beyond = (position + 2.0).clamp(0.0, f64::from(MOST_CELLS) + 4.0);
-            (beyond * SUBCELLS as f64 + 0.5) as i32 - 2 * SUBCELLS as i32
-        };
+        let subcells = f64::from(self.cells) * SUBCELLS as f64 / (2.0 * radius);
         let [x, y, z] = [self.frame.x, self.frame.y, self.frame.z].map(|axis| axis.as_dvec3());
-        let relative = point.as_dvec3() - self.center.as_dvec3();
-        Point {
-            x: subcells(relative.dot(x), self.offset.x),
-            y: subcells(relative.dot(y), self.offset.y),
-            depth: (relative.dot(z) + radius * f64::from(Ray::LEAD)) as f32,
+        let (x, y) = (x * subcells, y * subcells);
+        let first = radius * subcells - self.offset.as_dvec2() * SUBCELLS as f64;
+        let (center, lead) = (self.center.as_dvec3(), radius * f64::from(Ray::LEAD));
+        // What lies beyond the grid is moved closer, so that the arithmetic of its edges cannot overflow.
+        let beyond = (2 * SUBCELLS) as f64;
+        let least_greatest = [-beyond, f64::from(MOST_CELLS) * SUBCELLS as f64 + beyond];
+        // A cast cuts off what is behind the point, towards zero: rounding needs a number that is positive.
+        let round = move |position: f64| {
+            let [least, greatest] = least_greatest;
+            (position.clamp(least, greatest) + (beyond + 0.5)) as i32 - (2 * SUBCELLS) as i32
+        };
+        move |point| {
+            let relative = point.as_dvec3() - center;
+            Point {
+                x: round(relative.dot(x) + first.x),
+                y: round(relative.dot(y) + first.y),
+                depth: (relative.dot(z) + lead) as f32,
+            }
         }
     }
 
@@ -135,7 +142,7 @@ mod tests {
         let grid = Grid::new((Vec3::new(1.0, 2.0, 3.0), 2.0), direction, Vec2::new(0.25, 0.75), 10);
         let line = grid.line(3, 8);
         for t in [0.0, 1.0, 4.0] {
-            let point = grid.project(line.origin + t * direction);
+            let point = grid.projection()(line.origin + t * direction);
             assert!((i64::from(point.x) - 3 * SUBCELLS).abs() <= 1, "{point:?}");
             assert!((i64::from(point.y) - 8 * SUBCELLS).abs() <= 1, "{point:?}");
             assert!((point.depth - t).abs() < 1e-5, "{point:?}");

@@ -43,7 +43,7 @@ impl Raster {
     /// Projects triangles, given by the numbers of their corners among `vertices` [m]. Those with a coordinate that is not
     /// finite are never crossed.
     pub fn new(grid: Grid, vertices: impl Iterator<Item = Vec3>, triangles: impl Iterator<Item = [u32; 3]>) -> Raster {
-        let points: Vec<Point> = vertices.map(|vertex| grid.project(vertex)).collect();
+        let points: Vec<Point> = vertices.map(grid.projection()).collect();
         let mut projected = Vec::with_capacity(triangles.size_hint().0);
         let (mut in_tiles, mut tiles) = (Vec::with_capacity(projected.capacity()), Lists::default());
         for (number, vertices) in (0..).zip(triangles) {
@@ -83,7 +83,7 @@ impl Raster {
             let [across, up] = triangle.bounds(self.grid.cells());
             let across = common(across, &columns);
             for row in common(up, &rows) {
-                let covered = coverage.row(row, &across);
+                let Some(covered) = coverage.row(row, &across) else { continue };
                 let line = (row - rows.start) * width + covered.first - columns.start;
                 let (begin, end) = (count, count + covered.length as usize);
                 if end > fragments.len() {
