@@ -77,33 +77,40 @@ fn rates(problem: &Problem, cells: u32) -> [f64; 5] {
     OwenSobol::new(1).fill(bundle::STREAM, 0, &mut samples);
     let source = Source::new(problem, |_| Rgb::WHITE);
     let mut sums = Sums::new(problem);
-    let crossings = rasterised(problem, &samples, cells);
-    let mut rounds = [[0.0; ROUNDS]; 5];
-    for round in 0..ROUNDS {
-        let per_second = |crossings: usize, start: f64| crossings as f64 * 1e-6 / (seconds() - start);
-        let start = seconds();
-        let traced = traced(problem);
-        rounds[0][round] = per_second(traced, start);
-        let start = seconds();
-        black_box(rasterised(problem, &samples, cells));
-        rounds[1][round] = per_second(crossings, start);
-        let start = seconds();
-        each_bundle(problem, &samples, cells, |bundle| {
-            let mut found = TileLists::default();
-            (0..bundle.tiles()).for_each(|tile| bundle.crossings(tile, black_box(&mut found)));
-        });
-        rounds[2][round] = per_second(crossings, start);
-        let start = seconds();
-        each_bundle(problem, &samples, cells, |bundle| gather(bundle, &source, &mut sums));
-        rounds[3][round] = per_second(crossings, start);
-        let start = seconds();
-        each_bundle(problem, &samples, cells, |bundle| bundle.spans(0..bundle.tiles(), |span| _ = black_box(span)));
-        rounds[4][round] = per_second(crossings, start);
+    let [of_rays, of_bundles] = [traced(problem), rasterised(problem, &samples, cells)];
+    let mut rounds = [[0.0; 5]; ROUNDS];
+    for round in &mut rounds {
+        *round = [
+            millions_per_second(of_rays, || _ = black_box(traced(problem))),
+            millions_per_second(of_bundles, || _ = black_box(rasterised(problem, &samples, cells))),
+            millions_per_second(of_bundles, || {
+                each_bundle(problem, &samples, cells, |bundle| {
+                    let mut found = TileLists::default();
+                    (0..bundle.tiles()).for_each(|tile| bundle.crossings(tile, black_box(&mut found)));
+                });
+            }),
+            millions_per_second(of_bundles, || {
+                each_bundle(problem, &samples, cells, |bundle| gather(bundle, &source, &mut sums));
+            }),
+            millions_per_second(of_bundles, || {
+                each_bundle(problem, &samples, cells, |bundle| {
+                    bundle.spans(0..bundle.tiles(), |span| _ = black_box(span))
+                });
+            }),
+        ];
     }
-    rounds.map(|mut rates| {
+    std::array::from_fn(|way| {
+        let mut rates = rounds.map(|round| round[way]);
         rates.sort_by(f64::total_cmp);
         rates[ROUNDS / 2]
     })
+}
+
+/// The rate at which `run` makes so many things.
+fn millions_per_second(things: usize, run: impl FnOnce()) -> f64 {
+    let start = seconds();
+    run();
+    things as f64 * 1e-6 / (seconds() - start)
 }
 
 /// Seconds that the processor has spent on this thread, so that a busy machine is not taken for a slow program; where the system

@@ -136,7 +136,7 @@ impl Row {
     pub fn at(&self, k: u32) -> (f32, Vec2) {
         let weight = |coordinate: usize| self.start[coordinate] + k as f32 * self.growth[coordinate];
         // Rounding must not lead out of the triangle.
-        let u = weight(0).max(0.0).min(1.0);
+        let u = weight(0).clamp(0.0, 1.0);
         let v = weight(1).max(0.0).min(1.0 - u);
         (self.depth[0] + u * self.depth[1] + v * self.depth[2], Vec2::new(u, v))
     }
