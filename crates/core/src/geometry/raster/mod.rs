@@ -9,7 +9,7 @@
 //! Corners are rounded to 1/65,536 of a cell, so a crossing is where the ray of [`grid::Grid::line`] has it but for that.
 //! Depths are interpolated between the corners' and never lie beyond them.
 //!
-//! Cost: O(triangles) to project and to sort into tiles, once for a direction, 36 bytes a triangle and 12 a vertex; then
+//! Cost: O(triangles) to project and to sort into tiles, once for a direction, about 50 bytes a triangle and 12 a vertex; then
 //! O(crossings).
 
 pub mod cover;
