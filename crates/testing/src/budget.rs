@@ -24,6 +24,7 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("crossings of global lines", 24),
     ("form factors of rectangles by global lines", 3),
     ("form factors of rectangles by bundles", 6),
+    ("gathering by bundles in a box", 6),
     ("form factors of the sphere by global lines", 1),
     ("directions of global lines at an element", 2),
     ("form factor matrix by local lines", 4),

@@ -100,16 +100,15 @@ fn missing(problem: &Problem, line: &Ray, hits: &[Hit], others: &[Hit]) -> usize
 fn rasterised_crossings_are_those_of_rays() {
     for name in ["box", "cornell-box", "cubes", "office"] {
         let problem = problem(name, 1);
-        let scene = &problem.scene;
         let mut random = Random::new(2);
         let (mut crossings, mut different) = (0, 0);
         for _ in 0..6 {
             let (direction, offset) = (square_to_sphere(random.square()).normalize(), random.square());
             let grid = Grid::new(problem.geometry.bounding_sphere(), direction, offset, 150);
-            let raster = Raster::new(grid, (0..scene.triangles.len() as u32).map(|t| scene.corners(t)));
+            let raster = Raster::of(&problem.scene, grid);
             for tile in 0..grid.tiles() {
                 let lines = grid.lines(tile);
-                let (rasterised, mut traced) = (raster.crossings(tile), HitLists::default());
+                let (rasterised, mut traced) = (raster.hits(tile), HitLists::default());
                 problem.geometry.all(&lines, &mut traced);
                 assert_eq!((rasterised.len(), traced.len()), (lines.len(), lines.len()));
                 for ((a, b), line) in rasterised.iter().zip(traced.iter()).zip(&lines) {
@@ -128,8 +127,8 @@ fn lines_through_shared_edges_cross_once() {
     let problem = problem("box:width=4,height=4,depth=4", 1);
     let (center, _) = problem.geometry.bounding_sphere();
     let grid = Grid::new((center, 4.0), Vec3::Z, Vec2::ZERO, 8);
-    let raster = Raster::new(grid, (0..12).map(|t| problem.scene.corners(t)));
-    let crossed: Vec<usize> = raster.crossings(0).iter().map(<[Hit]>::len).collect();
+    let raster = Raster::of(&problem.scene, grid);
+    let crossed: Vec<usize> = raster.hits(0).iter().map(<[Hit]>::len).collect();
     // Lines a metre apart: four by four of them in a room of four metres, some through diagonals, edges and corners.
     assert_eq!(crossed.iter().filter(|&&crossings| crossings == 2).count(), 16);
     assert_eq!(crossed.iter().sum::<usize>(), 32);

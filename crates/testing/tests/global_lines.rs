@@ -10,7 +10,7 @@ use isolux_core::math::{Frame, Rgb};
 use isolux_core::sampling::{Sample, Sequence, SequenceName};
 use isolux_core::scene::builtin::shapes::Builder;
 use isolux_core::scene::{Material, Scene};
-use isolux_core::transport::{Arrival, Bundle, Span, global_line, spans};
+use isolux_core::transport::{Bundle, Crossing, Span, global_line, spans};
 use isolux_testing::budget::{assert_chi2, assert_t, assert_z, refutes};
 use isolux_testing::exact::{BLOCKED_SQUARES, parallel_rectangles, perpendicular_rectangles};
 use isolux_testing::random::Random;
@@ -31,16 +31,14 @@ fn lines_through_the_ball(problem: &Problem, lines: u64, mut each: impl FnMut(Ve
         let point = center + radius * random.uniform().cbrt() * square_to_sphere(random.square());
         let direction = square_to_sphere(random.square());
         problem.geometry.all(&[Ray::whole_line(point, direction, 2.0 * radius)], &mut lists);
-        lists.iter().for_each(|crossings| spans(problem, crossings, |span| each(direction, span)));
+        let crossings = lists.iter().flatten().map(|hit| Crossing::of(problem, hit));
+        spans(problem.geometry.lift(), crossings, |span| each(direction, span));
     }
 }
 
 /// The elements at the ends of a span.
 fn elements(span: Span) -> [Option<u32>; 2] {
-    [span.from, span.to].map(|end| match end {
-        Arrival::Element { element, .. } => Some(element),
-        Arrival::BackFace | Arrival::Escaped => None,
-    })
+    [span.from, span.to].map(|end| end.element())
 }
 
 /// Deviation of the number of lines that cross each element from `N A / (2 pi R²)`.
@@ -139,7 +137,7 @@ fn bundle_deviations(problem: &Problem, exact: f64, draw: impl Fn(Sample) -> Sam
         independent().fill(0, number, &mut sample);
         let bundle = Bundle::new(problem, draw(sample[0]), 40).expect("a number of cells that is allowed");
         let mut seen = Seen::default();
-        (0..bundle.tiles()).for_each(|tile| bundle.spans(tile, |span| seen.count(problem, span)));
+        bundle.spans(0..bundle.tiles(), |span| seen.count(problem, span));
         first.push(seen.first as f64);
         both.push(seen.both as f64);
         expected = bundle.expected_crossings(1.0);

@@ -7,7 +7,7 @@
 
 use super::{MOST_ENTRIES, Row, Settings, Way};
 use crate::sampling::OwenSobol;
-use crate::transport::{Arrival, Span, global_line};
+use crate::transport::{End, Span, global_line};
 use crate::{Error, Problem};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -64,12 +64,12 @@ impl GlobalLines {
         Ok(counted)
     }
 
-    fn count(&mut self, from: Arrival, to: Arrival) {
-        let Arrival::Element { element: from, .. } = from else { return };
-        match to {
-            Arrival::Element { element: to, .. } => self.seen[from as usize].push(to),
-            Arrival::BackFace => self.back_faces[from as usize] += 1,
-            Arrival::Escaped => {}
+    fn count(&mut self, from: End, to: End) {
+        let Some(from) = from.element() else { return };
+        match to.element() {
+            Some(to) => self.seen[from as usize].push(to),
+            None if to == End::BACK_FACE => self.back_faces[from as usize] += 1,
+            None => {}
         }
     }
 }

@@ -5,13 +5,13 @@
 
 pub mod brute;
 pub mod bvh;
-mod hit_lists;
+mod lists;
 pub mod raster;
 pub mod sphere;
 
 pub use brute::Brute;
 pub use bvh::Bvh;
-pub use hit_lists::HitLists;
+pub use lists::{Along, HitLists, Lists};
 pub use sphere::Sphere;
 
 use crate::scene::{Scene, Shape};

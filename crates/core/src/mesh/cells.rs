@@ -20,13 +20,10 @@ pub fn at(uv: Vec2, m: u16) -> u32 {
 #[inline]
 pub fn locate(uv: Vec2, m: u16) -> (u32, Vec2) {
     let m = u32::from(m);
-    if m == 1 {
-        return (0, uv);
-    }
     let grid = uv * m as f32;
-    // What is less than zero is cast to zero.
-    let i = (grid.x as u32).min(m - 1);
-    let j = (grid.y as u32).min(m - 1 - i);
+    // What is less than zero is cast to zero. To 16 bits, for their bounds are numbers in single precision: no other cast is as cheap.
+    let i = u32::from(grid.x as u16).min(m - 1);
+    let j = u32::from(grid.y as u16).min(m - 1 - i);
     let within = grid - Vec2::new(i as f32, j as f32);
     // Half the points lie in reversed cells, in no order: a branch would be guessed wrong at every second one.
     let reversed = u32::from(within.x + within.y > 1.0) & u32::from(i + j + 2 <= m);

@@ -11,6 +11,7 @@ mod build;
 pub mod cells;
 mod clip;
 mod cut;
+mod lookup;
 mod mip;
 mod morton;
 mod resolution;
@@ -18,6 +19,7 @@ mod slices;
 mod triangle;
 
 pub use cut::Cut;
+pub use lookup::Lookup;
 pub use resolution::Resolution;
 
 use crate::math::Rgb;

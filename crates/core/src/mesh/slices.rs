@@ -59,24 +59,21 @@ impl Slices {
 
     /// The patch at barycentric coordinates `uv` of the triangle, and the barycentric coordinates on it, in the order of
     /// its [`corners`](Slices::corners).
+    #[inline]
     pub fn locate(self, uv: Vec2) -> (u32, Vec2) {
         if self.count == 1 {
             return (0, uv);
         }
         let p = (self.along_edges(uv) * f32::from(self.count)).max(Vec2::ZERO);
-        let i = ((p.x + p.y) as u32).min(u32::from(self.count) - 1);
-        if i == 0 {
-            return (0, p);
-        }
-        let below = i as f32;
+        let i = ((p.x + p.y) as u16).min(self.count - 1);
+        let below = f32::from(i);
         let beyond = p.x * (below + 1.0) + p.y * below >= below * (below + 1.0);
-        if beyond {
-            let v = p.y / (below + 1.0);
-            (2 * i, Vec2::new(p.x - below * (1.0 - v), v))
-        } else {
-            let u = p.x + p.y - below;
-            (2 * i - 1, Vec2::new(u, 1.0 - p.x / below - u))
-        }
+        // Half the points lie beyond the diagonal, in no order: values are chosen, for a branch would be guessed wrong.
+        let across = if beyond { p.y } else { p.x } / if beyond { below + 1.0 } else { below };
+        let up = p.x + p.y - below;
+        let within = [Vec2::new(up, 1.0 - across - up), Vec2::new(p.x - below * (1.0 - across), across)];
+        let select = |coordinate: usize| if beyond { within[1][coordinate] } else { within[0][coordinate] };
+        (2 * u32::from(i) - u32::from(!beyond), Vec2::new(select(0), select(1)))
     }
 
     /// Coordinates along the two edges that leave the tip, of a point of the triangle.

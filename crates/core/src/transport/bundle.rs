@@ -5,19 +5,24 @@
 //! a` times, `A / (2 a)` times in the mean over all directions. Each line alone is a global line, so all that is true of
 //! those holds; but the lines of a bundle are not independent: errors fall with the number of bundles, not of lines.
 //!
+//! Per line the raster gives what a ray of all hits would: the crossings, with the elements on both sides (see
+//! [`crossing`](super::crossing)); [`bundle_gather`](super::bundle_gather) is the fast way to use them.
+//!
 //! Unbiased, but for corners rounded to 1/65,536 of a cell. Cost: O(triangles) a bundle, and then O(crossings), by
 //! rasterisation; the analytic sphere is traced by rays.
 
 use super::span::{Span, spans};
+use super::{Crossing, Met};
 use crate::Error;
 use crate::Problem;
-use crate::geometry::HitLists;
-use crate::geometry::raster::Raster;
 use crate::geometry::raster::grid::{Grid, MOST_CELLS};
+use crate::geometry::raster::{Raster, TileLists};
+use crate::geometry::{HitLists, Lists};
 use crate::math::warp::square_to_sphere;
 use crate::sampling::{Sample, Sequence};
 use crate::scene::Shape;
 use glam::{Vec2, Vec3};
+use std::ops::Range;
 
 /// The stream of a sequence that bundles draw, beyond those of all elements and lamps.
 pub const STREAM: u64 = (1 << 32) + 1;
@@ -44,8 +49,7 @@ impl<'a> Bundle<'a> {
         let direction = square_to_sphere(Vec2::new(x1, x2)).normalize();
         let grid = Grid::new(problem.geometry.bounding_sphere(), direction, Vec2::new(x3, x4), cells);
         let scene = &problem.scene;
-        let triangles = (0..scene.triangles.len() as u32).map(|t| scene.corners(t));
-        let raster = (scene.shape == Shape::Triangles).then(|| Raster::new(grid, triangles));
+        let raster = (scene.shape == Shape::Triangles).then(|| Raster::of(scene, grid));
         Ok(Bundle { problem, grid, raster })
     }
 
@@ -64,6 +68,11 @@ impl<'a> Bundle<'a> {
         self.grid.direction()
     }
 
+    /// The problem whose surfaces its lines cross.
+    pub fn problem(&self) -> &'a Problem {
+        self.problem
+    }
+
     /// How many crossings of a plane surface of `area` [m²] are expected in the mean over all directions: `A / (2 a)`.
     pub fn expected_crossings(&self, area: f32) -> f64 {
         f64::from(area) / (2.0 * self.grid.cell_area())
@@ -74,20 +83,41 @@ impl<'a> Bundle<'a> {
         self.grid.tiles()
     }
 
-    /// Hands the spans of the lines of `tile` to `each`, line by line.
-    pub fn spans(&self, tile: u32, mut each: impl FnMut(Span)) {
-        let lists = self.crossings(tile);
-        lists.iter().for_each(|crossings| spans(self.problem, crossings, &mut each));
+    /// Hands the spans of the lines of `tiles` to `each`, line by line.
+    pub fn spans(&self, tiles: Range<u32>, mut each: impl FnMut(Span)) {
+        let lift = self.problem.geometry.lift();
+        let mut found = TileLists::default();
+        for tile in tiles {
+            self.crossings(tile, &mut found);
+            found.lists.iter().for_each(|crossings| spans(lift, crossings.iter().copied(), &mut each));
+        }
     }
 
-    /// The crossings of the lines of `tile`, a list a line.
-    fn crossings(&self, tile: u32) -> HitLists {
-        if let Some(raster) = &self.raster {
-            return raster.crossings(tile);
+    /// Fills `found` with the crossings of the lines of `tile`, a list for each of its lines, row by row; no lists for a tile
+    /// that does not exist.
+    pub fn crossings(&self, tile: u32, found: &mut TileLists<Crossing>) {
+        match &self.raster {
+            Some(raster) => self.rasterise(raster, tile, found),
+            None => self.trace(tile, &mut found.lists),
         }
+    }
+
+    fn rasterise(&self, raster: &Raster, tile: u32, found: &mut TileLists<Crossing>) {
+        let meet = |triangle, back| {
+            let met = Met::new(&self.problem.mesh, triangle, back);
+            move |t, uv| met.crossing(t, uv)
+        };
+        raster.crossings(tile, meet, found);
+    }
+
+    fn trace(&self, tile: u32, found: &mut Lists<Crossing>) {
         let mut lists = HitLists::default();
         self.problem.geometry.all(&self.grid.lines(tile), &mut lists);
-        lists
+        found.clear();
+        for hits in lists.iter() {
+            hits.iter().for_each(|hit| found.push(Crossing::of(self.problem, hit)));
+            found.finish();
+        }
     }
 }
 
@@ -106,7 +136,7 @@ mod tests {
         let problem = problem("sphere");
         let bundle = Bundle::new(&problem, [0.3, 0.6, 0.5, 0.5], 100).unwrap();
         let mut inside = 0;
-        (0..bundle.tiles()).for_each(|tile| bundle.spans(tile, |_| inside += 1));
+        bundle.spans(0..bundle.tiles(), |_| inside += 1);
         // Every line through the disc has one span: a disc in its square.
         assert!((f64::from(inside) / 1e4 - std::f64::consts::FRAC_PI_4).abs() < 0.01, "{inside}");
     }

@@ -7,6 +7,7 @@
 //!
 //! Unbiased. Cost: one ray of all hits a line.
 
+use super::Crossing;
 use super::span::{Span, spans};
 use crate::Problem;
 use crate::geometry::{HitLists, Ray};
@@ -48,7 +49,9 @@ pub fn trace(problem: &Problem, sequence: &dyn Sequence, lines: Range<u64>, mut 
         rays.clear();
         rays.extend(samples.iter().map(|&sample| ray(sample, sphere)));
         problem.geometry.all(&rays, &mut lists);
-        lists.iter().for_each(|crossings| spans(problem, crossings, &mut each));
+        for hits in lists.iter() {
+            spans(problem.geometry.lift(), hits.iter().map(|hit| Crossing::of(problem, hit)), &mut each);
+        }
         next += count;
     }
 }

@@ -2,6 +2,8 @@
 
 pub mod arrival;
 pub mod bundle;
+pub mod bundle_gather;
+pub mod crossing;
 pub mod footprint;
 pub mod global_line;
 pub mod lamp;
@@ -10,6 +12,7 @@ pub mod span;
 
 pub use arrival::{Arrival, arrivals};
 pub use bundle::Bundle;
+pub use crossing::{Crossing, End, Met};
 pub use footprint::{Footprint, Leaving, Spot};
 pub use local_line::Departure;
 pub use span::{Span, spans};

@@ -10,51 +10,46 @@
 //! would: the nearest, of equally near ones that with the lowest number. The others are covered: nothing sees them, and they
 //! see nothing. So faces that coincide do not see each other, and an edge that two triangles share is met once.
 
-use super::Arrival;
-use crate::Problem;
-use crate::geometry::Hit;
+use super::{Crossing, End};
 
 /// Two ends that see each other, at least one of them an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Span {
     /// Whence the line comes.
-    pub from: Arrival,
+    pub from: End,
     /// Where it goes.
-    pub to: Arrival,
+    pub to: End,
 }
 
-/// Hands the spans of a line to `each`, in order; `crossings` are all its hits in the order of
-/// [`HitLists`](crate::geometry::HitLists). The line comes from the open and goes to the open.
-pub fn spans(problem: &Problem, crossings: &[Hit], mut each: impl FnMut(Span)) {
-    let lift = problem.geometry.lift();
-    let mut hand = |from, to| {
-        if is_element(from) || is_element(to) {
+/// Hands the spans of a line to `each`, in order. `crossings` are all its crossings, in order, those at equal distance in the
+/// order of their triangles. The line comes from the open and goes to the open.
+#[inline]
+pub fn spans(lift: f32, crossings: impl IntoIterator<Item = Crossing>, mut each: impl FnMut(Span)) {
+    let mut hand = |from: End, to: End| {
+        if from.is_element() || to.is_element() {
             each(Span { from, to });
         }
     };
-    let mut from = Arrival::Escaped;
-    for crossing in crossings.chunk_by(|a, b| b.t - a.t <= lift) {
-        let (near, far) = (crossing[0], seen_from_beyond(crossing));
-        hand(from, Arrival::at(problem, near.triangle, near.uv, near.back));
-        from = Arrival::at(problem, far.triangle, far.uv, !far.back);
+    // The crossing last met, and which of those within the lift of each other a line from the other side would meet.
+    let mut last = f32::NEG_INFINITY;
+    let mut seen_from_beyond = Crossing { t: last, near: End::ESCAPED, far: End::ESCAPED };
+    for next in crossings {
+        if next.t - last > lift {
+            hand(seen_from_beyond.far, next.near);
+            seen_from_beyond = next;
+        } else if next.t > seen_from_beyond.t {
+            seen_from_beyond = next;
+        }
+        last = next.t;
     }
-    hand(from, Arrival::Escaped);
-}
-
-/// Which of coincident hits a line from the other side would meet.
-fn seen_from_beyond(crossing: &[Hit]) -> Hit {
-    let last = crossing[crossing.len() - 1];
-    let equal = crossing.partition_point(|hit| hit.t < last.t);
-    crossing[equal]
-}
-
-fn is_element(end: Arrival) -> bool {
-    matches!(end, Arrival::Element { .. })
+    hand(seen_from_beyond.far, End::ESCAPED);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Problem;
+    use crate::geometry::Hit;
     use crate::math::Rgb;
     use crate::mesh::Resolution;
     use crate::scene::Material;
@@ -80,16 +75,16 @@ mod tests {
 
     /// The ends of all spans: a triangle and whether its back, or why there is none.
     fn found(problem: &Problem, crossings: &[Hit]) -> Vec<[Result<(u32, bool), &'static str>; 2]> {
-        let end = |end| match end {
-            Arrival::Element { element, .. } => {
+        let end = |end: End| match end.element() {
+            Some(element) => {
                 let place = problem.mesh.place(element);
                 Ok((place.triangle, place.back))
             }
-            Arrival::BackFace => Err("black"),
-            Arrival::Escaped => Err("open"),
+            None => Err(if end == End::ESCAPED { "open" } else { "black" }),
         };
         let mut found = Vec::new();
-        spans(problem, crossings, |span| found.push([end(span.from), end(span.to)]));
+        let crossings = crossings.iter().map(|hit| Crossing::of(problem, hit));
+        spans(problem.geometry.lift(), crossings, |span| found.push([end(span.from), end(span.to)]));
         found
     }
 

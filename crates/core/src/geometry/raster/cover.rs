@@ -12,30 +12,49 @@
 //! triangles around a corner exactly one covers the corner. So a line meets a closed surface neither twice at one place nor
 //! never.
 //!
-//! Each edge bounds the covered points of a row on one side, by an integer division. Cost: three divisions a row.
+//! Each edge bounds the covered points of a row on one side, by an integer division. Cost: three divisions a row. Depth and
+//! barycentric coordinates are interpolated along the row.
 
-use crate::geometry::Hit;
 use glam::Vec2;
 use std::ops::Range;
 
 /// Subcells along the edge of a cell; the points of the grid have whole cells as coordinates.
 pub const SUBCELLS: i64 = 1 << 16;
 
+/// A point in the space of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Across the lines [subcells].
+    pub x: i32,
+    pub y: i32,
+    /// Along the lines [m]; what is not finite belongs to a point that nothing can be made of.
+    pub depth: f32,
+}
+
 /// A triangle in the space of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projected {
-    /// Corners across the lines [subcells].
-    pub x: [i32; 3],
-    pub y: [i32; 3],
-    /// Corners along the lines [m].
-    pub depth: [f32; 3],
+    x: [i32; 3],
+    y: [i32; 3],
+    depth: [f32; 3],
 }
 
 impl Projected {
     /// What no point of a grid lies in.
-    pub const NOTHING: Projected = Projected { x: [1; 3], y: [1; 3], depth: [0.0; 3] };
+    const NOTHING: Projected = Projected { x: [1; 3], y: [1; 3], depth: [0.0; 3] };
+
+    /// The triangle with these corners, or nothing if one of them is not finite.
+    #[inline]
+    pub fn new(corners: [Point; 3]) -> Projected {
+        let depth = corners.map(|corner| corner.depth);
+        if !depth.iter().all(|depth| depth.is_finite()) {
+            return Projected::NOTHING;
+        }
+        Projected { x: corners.map(|corner| corner.x), y: corners.map(|corner| corner.y), depth }
+    }
 
     /// Columns and rows, of a grid of `cells` by `cells`, of the box around the triangle.
+    #[inline]
     pub fn bounds(&self, cells: u32) -> [Range<u32>; 2] {
         let range = |corners: [i32; 3]| {
             let [a, b, c] = corners.map(i64::from);
@@ -46,39 +65,85 @@ impl Projected {
         [range(self.x), range(self.y)]
     }
 
-    /// Hands the column and row of every point in these ranges that the triangle, number `triangle`, covers to `each`, and
-    /// the hit of the line there.
+    /// Which points it covers; `None` if it is seen edge-on and covers none.
     #[inline]
-    pub fn cover(&self, triangle: u32, [columns, rows]: [Range<u32>; 2], mut each: impl FnMut(u32, u32, Hit)) {
-        let [a, mut b, mut c] = [0, 1, 2].map(|k| [i64::from(self.x[k]), i64::from(self.y[k])]);
+    pub fn coverage(&self) -> Option<Coverage> {
+        let [a, b, c] = [0, 1, 2].map(|k| [i64::from(self.x[k]), i64::from(self.y[k])]);
         // Counter-clockwise in a frame that looks along the lines: they leave through the front.
         let area = Edge::new(a, b).at_subcell(c);
         let back = area > 0;
-        if area == 0 {
-            return;
-        }
-        if !back {
-            std::mem::swap(&mut b, &mut c);
-        }
-        let edges = [Edge::new(b, c), Edge::new(c, a), Edge::new(a, b)];
-        let (of_u, of_v) = if back { (&edges[1], &edges[2]) } else { (&edges[2], &edges[1]) };
-        let share = 1.0 / area.abs() as f32;
+        let edges = |ends: [[[i64; 2]; 2]; 3]| ends.map(|[p, q]| Edge::new(p, q));
         let [first, second, third] = self.depth;
-        for row in rows {
-            let clip = |columns: Range<i64>, edge: &Edge| edge.clip(row, columns);
-            let covered = edges.iter().fold(i64::from(columns.start)..i64::from(columns.end), clip);
-            for column in covered {
-                let weight = |edge: &Edge| (edge.at(column, row) as f32 * share).min(1.0);
-                let u = weight(of_u);
-                let v = weight(of_v).min(1.0 - u);
-                let t = first + u * (second - first) + v * (third - first);
-                each(column as u32, row, Hit { t, triangle, uv: Vec2::new(u, v), back });
-            }
+        (area != 0).then(|| Coverage {
+            back,
+            edges: edges(if back { [[b, c], [c, a], [a, b]] } else { [[c, b], [a, c], [b, a]] }),
+            share: 1.0 / area.abs() as f32,
+            depth: [first, second - first, third - first],
+        })
+    }
+}
+
+/// The points of a grid that a triangle covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Coverage {
+    /// Whether lines meet its back.
+    pub back: bool,
+    /// The edges opposite its corners, with the triangle on the left.
+    edges: [Edge; 3],
+    /// One over twice its area, the greatest value of each edge function [1/subcells²].
+    share: f32,
+    /// Depth [m] of the first corner, and what the others lie beyond it.
+    depth: [f32; 3],
+}
+
+impl Coverage {
+    /// What it covers of `row`, within these columns, if it is anything.
+    #[inline]
+    pub fn row(&self, row: u32, columns: &Range<u32>) -> Option<Row> {
+        let all = i64::from(columns.start)..i64::from(columns.end);
+        let covered = self.edges.iter().fold(all, |columns, edge| edge.clip(row, columns));
+        if covered.is_empty() {
+            return None;
         }
+        let [_, of_u, of_v] = &self.edges;
+        let weight = |edge: &Edge| edge.at(covered.start, row) as f32 * self.share;
+        let growth = |edge: &Edge| edge.per_column as f32 * self.share;
+        Some(Row {
+            first: covered.start as u32,
+            length: (covered.end - covered.start) as u32,
+            start: [weight(of_u), weight(of_v)],
+            growth: [growth(of_u), growth(of_v)],
+            depth: self.depth,
+        })
+    }
+}
+
+/// Neighbouring points of a row that a triangle covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Column of the first, and how many there are.
+    pub first: u32,
+    pub length: u32,
+    /// Barycentric coordinates of the first, and what they grow from one to the next.
+    start: [f32; 2],
+    growth: [f32; 2],
+    depth: [f32; 3],
+}
+
+impl Row {
+    /// Distance [m] at which the line of the k-th of the points meets the triangle, and the barycentric coordinates there.
+    #[inline(always)]
+    pub fn at(&self, k: u32) -> (f32, Vec2) {
+        let weight = |coordinate: usize| self.start[coordinate] + k as f32 * self.growth[coordinate];
+        // Rounding must not lead out of the triangle.
+        let u = weight(0).clamp(0.0, 1.0);
+        let v = weight(1).max(0.0).min(1.0 - u);
+        (self.depth[0] + u * self.depth[1] + v * self.depth[2], Vec2::new(u, v))
     }
 }
 
 /// The edge function of a directed edge at the points of the grid; positive to the left of it.
+#[derive(Clone, Copy, Debug)]
 struct Edge {
     at_zero: i64,
     per_column: i64,
@@ -127,6 +192,7 @@ impl Edge {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Hit;
     use crate::math::hash::mix;
 
     const CELLS: u32 = 16;
@@ -135,11 +201,23 @@ mod tests {
         Projected { x: corners.map(|p| p[0] as i32), y: corners.map(|p| p[1] as i32), depth: [1.0, 2.0, 4.0] }
     }
 
+    /// The points in these ranges that a triangle covers, and the hits of their lines.
+    fn hits(triangle: &Projected, [columns, rows]: [Range<u32>; 2]) -> Vec<(u32, u32, Hit)> {
+        let Some(coverage) = triangle.coverage() else { return Vec::new() };
+        let hits = |row| {
+            let hit = move |(t, uv)| Hit { t, triangle: 0, uv, back: coverage.back };
+            let covered = coverage.row(row, &columns).into_iter();
+            covered
+                .flat_map(move |covered| (0..covered.length).map(move |k| (covered.first + k, row, hit(covered.at(k)))))
+        };
+        rows.flat_map(hits).collect()
+    }
+
     /// How often each point of the grid is covered.
     fn covered(triangles: &[Projected]) -> Vec<u32> {
         let mut times = vec![0; (CELLS * CELLS) as usize];
-        for triangle in triangles {
-            triangle.cover(0, triangle.bounds(CELLS), |column, row, _| times[(row * CELLS + column) as usize] += 1);
+        for (column, row, _) in triangles.iter().flat_map(|triangle| hits(triangle, triangle.bounds(CELLS))) {
+            times[(row * CELLS + column) as usize] += 1;
         }
         times
     }
@@ -180,17 +258,13 @@ mod tests {
 
     #[test]
     fn hits_are_interpolated_and_know_their_side() {
-        let corners = [[0, 0], [8 * SUBCELLS, 0], [0, 8 * SUBCELLS]];
-        let mut hits = Vec::new();
-        triangle(corners).cover(7, [2..3, 0..CELLS], |column, row, hit| hits.push((column, row, hit)));
-        let hit = |uv: Vec2, back| Hit { t: 1.0 + uv.x + 3.0 * uv.y, triangle: 7, uv, back };
+        let [a, b, c] = [[0, 0], [8 * SUBCELLS, 0], [0, 8 * SUBCELLS]];
+        let hit = |uv: Vec2, back| Hit { t: 1.0 + uv.x + 3.0 * uv.y, triangle: 0, uv, back };
         let uv = |row: u32| Vec2::new(0.25, row as f32 / 8.0);
-        assert_eq!(hits, (0..6).map(|row| (2, row, hit(uv(row), true))).collect::<Vec<_>>());
-        // Turned over.
-        let [a, b, c] = corners;
-        hits.clear();
-        triangle([a, c, b]).cover(7, [2..3, 1..2], |column, row, hit| hits.push((column, row, hit)));
-        assert_eq!(hits, [(2, 1, hit(Vec2::new(0.125, 0.25), false))]);
+        let expected: Vec<_> = (0..6).map(|row| (2, row, hit(uv(row), true))).collect();
+        assert_eq!(hits(&triangle([a, b, c]), [2..3, 0..CELLS]), expected);
+        let turned_over = hits(&triangle([a, c, b]), [2..3, 1..2]);
+        assert_eq!(turned_over, [(2, 1, hit(Vec2::new(0.125, 0.25), false))]);
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! grid as a whole, so every point of the plane over the sphere is as likely to lie on a line as any other, and there are `1
 //! / h²` lines a square metre.
 
-use super::cover::{Projected, SUBCELLS};
+use super::cover::{Point, SUBCELLS};
 use crate::geometry::Ray;
 use crate::math::Frame;
 use glam::{Vec2, Vec3};
@@ -55,20 +55,29 @@ impl Grid {
         Ray::whole_line(point, self.direction(), self.radius)
     }
 
-    /// A triangle as the grid sees it: in subcells across the lines, in metres from their origins along them.
-    pub fn project(&self, corners: [Vec3; 3]) -> Projected {
+    /// The map to points as the grid sees them: in subcells across the lines, in metres from their origins along them.
+    pub fn projection(&self) -> impl Fn(Vec3) -> Point + use<> {
         let radius = f64::from(self.radius);
-        let in_cells = f64::from(self.cells) / (2.0 * radius);
-        let subcells = |along: f64, offset: f32| {
-            let position = (along + radius) * in_cells - f64::from(offset);
-            (position.clamp(-2.0, f64::from(MOST_CELLS) + 2.0) * SUBCELLS as f64).round() as i32
-        };
+        let subcells = f64::from(self.cells) * SUBCELLS as f64 / (2.0 * radius);
         let [x, y, z] = [self.frame.x, self.frame.y, self.frame.z].map(|axis| axis.as_dvec3());
-        let relative = corners.map(|corner| corner.as_dvec3() - self.center.as_dvec3());
-        Projected {
-            x: relative.map(|p| subcells(p.dot(x), self.offset.x)),
-            y: relative.map(|p| subcells(p.dot(y), self.offset.y)),
-            depth: relative.map(|p| (p.dot(z) + radius * f64::from(Ray::LEAD)) as f32),
+        let (x, y) = (x * subcells, y * subcells);
+        let first = radius * subcells - self.offset.as_dvec2() * SUBCELLS as f64;
+        let (center, lead) = (self.center.as_dvec3(), radius * f64::from(Ray::LEAD));
+        // What lies beyond the grid is moved closer, so that the arithmetic of its edges cannot overflow.
+        let beyond = (2 * SUBCELLS) as f64;
+        let least_greatest = [-beyond, f64::from(MOST_CELLS) * SUBCELLS as f64 + beyond];
+        // A cast cuts off what is behind the point, towards zero: rounding needs a number that is positive.
+        let round = move |position: f64| {
+            let [least, greatest] = least_greatest;
+            (position.clamp(least, greatest) + (beyond + 0.5)) as i32 - (2 * SUBCELLS) as i32
+        };
+        move |point| {
+            let relative = point.as_dvec3() - center;
+            Point {
+                x: round(relative.dot(x) + first.x),
+                y: round(relative.dot(y) + first.y),
+                depth: (relative.dot(z) + lead) as f32,
+            }
         }
     }
 
@@ -91,12 +100,14 @@ impl Grid {
     }
 
     /// The tiles that some of these cells belong to.
+    #[inline]
     pub fn tiles_of(&self, [columns, rows]: [Range<u32>; 2]) -> impl Iterator<Item = u32> + use<> {
         let along = self.tiles_along_edge();
-        let tiles =
-            |cells: Range<u32>| if cells.is_empty() { 0..0 } else { cells.start / TILE..cells.end.div_ceil(TILE) };
-        let (columns, rows) = (tiles(columns), tiles(rows));
-        rows.flat_map(move |row| columns.clone().map(move |column| row * along + column))
+        let first = columns.start / TILE + rows.start / TILE * along;
+        let extent = |cells: &Range<u32>| cells.end.div_ceil(TILE).saturating_sub(cells.start / TILE);
+        let (width, height) = (extent(&columns), extent(&rows));
+        let none = columns.is_empty() || rows.is_empty();
+        (0..if none { 0 } else { width * height }).map(move |k| first + k % width + k / width * along)
     }
 
     fn tiles_along_edge(&self) -> u32 {
@@ -130,10 +141,12 @@ mod tests {
         let direction = Vec3::new(0.6, 0.0, -0.8);
         let grid = Grid::new((Vec3::new(1.0, 2.0, 3.0), 2.0), direction, Vec2::new(0.25, 0.75), 10);
         let line = grid.line(3, 8);
-        let projected = grid.project([0.0, 1.0, 4.0].map(|t| line.origin + t * direction));
-        assert!(projected.x.iter().all(|x| (i64::from(*x) - 3 * SUBCELLS).abs() <= 1), "{projected:?}");
-        assert!(projected.y.iter().all(|y| (i64::from(*y) - 8 * SUBCELLS).abs() <= 1), "{projected:?}");
-        assert!(projected.depth.iter().zip([0.0, 1.0, 4.0]).all(|(depth, t)| (depth - t).abs() < 1e-5));
+        for t in [0.0, 1.0, 4.0] {
+            let point = grid.projection()(line.origin + t * direction);
+            assert!((i64::from(point.x) - 3 * SUBCELLS).abs() <= 1, "{point:?}");
+            assert!((i64::from(point.y) - 8 * SUBCELLS).abs() <= 1, "{point:?}");
+            assert!((point.depth - t).abs() < 1e-5, "{point:?}");
+        }
         assert!((grid.cell_area() - 0.16).abs() < 1e-9);
     }
 }

@@ -10,7 +10,7 @@ use crate::solvers::monte_carlo::axes::Lines;
 use crate::solvers::{Landing, Part};
 use crate::transport::bundle::Bundle;
 use crate::transport::global_line;
-use crate::transport::{Arrival, Span};
+use crate::transport::{End, Span, Spot};
 use std::f64::consts::TAU;
 
 /// Lines of a piece.
@@ -75,17 +75,17 @@ impl LineSet {
     /// What leaves along the lines of `piece`, where `flux(i)` [lm] shall leave element i with all lines together.
     pub fn shoot(&self, problem: &Problem, sequence: &dyn Sequence, piece: u64, flux: impl Fn(u32) -> Rgb) -> Part {
         let mut part = Part::default();
-        let mut send = |from: Arrival, to: Arrival| {
-            let Arrival::Element { element, .. } = from else { return };
+        // Light leaves from all of an element along global lines: where it has landed is of no meaning.
+        let spot = Spot::default();
+        let mut send = |from: End, to: End| {
+            let Some(element) = from.element() else { return };
             part.rays += 1;
             let light = flux(element) / (f64::from(problem.mesh.area(element)) * self.crossings_per_area) as f32;
-            match to {
+            match to.element() {
                 _ if light.is_black() => {}
-                Arrival::Element { element, spot } => {
-                    part.landings.push(Landing { element, spot, light: light.to_array() });
-                }
-                Arrival::BackFace => part.back_face += light.luminance_f64(),
-                Arrival::Escaped => part.escaped += light.luminance_f64(),
+                Some(element) => part.landings.push(Landing { element, spot, light: light.to_array() }),
+                None if to == End::BACK_FACE => part.back_face += light.luminance_f64(),
+                None => part.escaped += light.luminance_f64(),
             }
         };
         self.for_spans(problem, sequence, piece, |Span { from, to }| {
@@ -99,12 +99,12 @@ impl LineSet {
     pub fn collect(&self, problem: &Problem, sequence: &dyn Sequence, piece: u64) -> Part {
         let mut part = Part::default();
         self.for_spans(problem, sequence, piece, |span| part.spans.push(span));
-        let is_element = |end: &Arrival| matches!(end, Arrival::Element { .. });
-        part.rays = part.spans.iter().flat_map(|span| [span.from, span.to]).filter(is_element).count() as u64;
+        part.rays =
+            part.spans.iter().flat_map(|span| [span.from, span.to]).filter(|end| end.is_element()).count() as u64;
         part
     }
 
-    fn for_spans(&self, problem: &Problem, sequence: &dyn Sequence, piece: u64, mut each: impl FnMut(Span)) {
+    fn for_spans(&self, problem: &Problem, sequence: &dyn Sequence, piece: u64, each: impl FnMut(Span)) {
         match self.kind {
             Kind::Single(lines) => {
                 let first = piece * LINES_PER_PIECE;
@@ -113,7 +113,7 @@ impl LineSet {
             Kind::Bundles { cells, .. } => {
                 // The number of cells is within the limit by the way it was made.
                 let Ok(bundle) = Bundle::nth(problem, sequence, piece, cells) else { return };
-                (0..bundle.tiles()).for_each(|tile| bundle.spans(tile, &mut each));
+                bundle.spans(0..bundle.tiles(), each);
             }
         }
     }

@@ -14,7 +14,7 @@ use crate::Problem;
 use crate::math::Rgb;
 use crate::solvers::Part;
 use crate::solvers::monte_carlo::axes::FirstShot;
-use crate::transport::{Arrival, Span};
+use crate::transport::{End, Span};
 
 impl Relaxation {
     /// Lets light walk along the spans of `part`.
@@ -29,8 +29,8 @@ impl Relaxation {
     }
 
     /// Takes the light [lm] that leaves `end` with this line.
-    fn leave(&mut self, problem: &Problem, end: Arrival, crossings_per_area: f32) -> Rgb {
-        let Arrival::Element { element, .. } = end else { return Rgb::BLACK };
+    fn leave(&mut self, problem: &Problem, end: End, crossings_per_area: f32) -> Rgb {
+        let Some(element) = end.element() else { return Rgb::BLACK };
         let share = self.source(problem, element) / crossings_per_area;
         self.adrift -= share.luminance_f64();
         self.light.take_unshot(element) + share
@@ -45,15 +45,15 @@ impl Relaxation {
         }
     }
 
-    fn arrive(&mut self, problem: &Problem, end: Arrival, light: Rgb) {
-        match end {
-            Arrival::Element { element, .. } => {
+    fn arrive(&mut self, problem: &Problem, end: End, light: Rgb) {
+        match end.element() {
+            Some(element) => {
                 let landed = self.light.land_and_wait(&problem.mesh, element, light);
                 self.balance.absorbed += landed.absorbed;
                 self.reflected += landed.reflected;
             }
-            Arrival::BackFace => self.lost[1] += light.luminance_f64(),
-            Arrival::Escaped => self.lost[0] += light.luminance_f64(),
+            None if end == End::BACK_FACE => self.lost[1] += light.luminance_f64(),
+            None => self.lost[0] += light.luminance_f64(),
         }
     }
 }
