@@ -2,14 +2,18 @@
 
 pub mod arrival;
 pub mod bundle;
+pub mod direct_light;
 pub mod footprint;
 pub mod global_line;
 pub mod lamp;
+pub mod light_sampling;
 pub mod local_line;
 pub mod span;
 
 pub use arrival::{Arrival, arrivals};
 pub use bundle::Bundle;
+pub use direct_light::DirectLight;
 pub use footprint::{Footprint, Leaving, Spot};
-pub use local_line::Departure;
+pub use light_sampling::LightSampler;
+pub use local_line::{Departure, Start};
 pub use span::{Span, spans};
