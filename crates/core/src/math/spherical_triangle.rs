@@ -10,8 +10,10 @@ use glam::{DVec3, Vec2, Vec3};
 /// The front of a triangle, seen from a point.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalTriangle {
+    /// Unit vectors to the corners.
     a: DVec3,
     b: DVec3,
+    c: DVec3,
     /// Unit vector at right angles to a, in the plane of a and c.
     towards_c: DVec3,
     /// Sine and cosine of the angle at a.
@@ -41,6 +43,7 @@ impl SphericalTriangle {
         (sin_angle > 0.0 && solid_angle > 0.0).then_some(SphericalTriangle {
             a,
             b,
+            c,
             towards_c,
             sin_angle,
             cos_angle,
@@ -51,6 +54,17 @@ impl SphericalTriangle {
     /// Solid angle [sr].
     pub fn solid_angle(&self) -> f64 {
         self.solid_angle
+    }
+
+    /// Solid angle weighted by the cosine to the unit vector `normal`, below its plane with negative sign [sr]: `pi` times the form
+    /// factor to a triangle above the plane (Lambert 1760).
+    pub fn projected(&self, normal: Vec3) -> f64 {
+        let normal = normal.as_dvec3();
+        let edge = |from: DVec3, to: DVec3| {
+            let across = to.cross(from);
+            across.length().atan2(from.dot(to)) * normal.dot(across.normalize_or_zero())
+        };
+        0.5 * (edge(self.a, self.b) + edge(self.b, self.c) + edge(self.c, self.a))
     }
 
     /// The unit vector to the point that belongs to `s` in the unit square.
@@ -90,6 +104,9 @@ mod tests {
     fn an_octant_is_an_eighth_of_the_sphere_and_its_back_is_nothing() {
         let seen = SphericalTriangle::new(OCTANT, Vec3::ZERO).unwrap();
         assert!((seen.solid_angle() - FRAC_PI_2).abs() < 1e-12);
+        // The octant projects to a quarter of the unit disc.
+        assert!((seen.projected(Vec3::Z) - 0.5 * FRAC_PI_2).abs() < 1e-12);
+        assert!((seen.projected(Vec3::NEG_X) + 0.5 * FRAC_PI_2).abs() < 1e-12);
         let [a, b, c] = OCTANT;
         assert!(SphericalTriangle::new([a, c, b], Vec3::ZERO).is_none());
         assert!(SphericalTriangle::new(OCTANT, Vec3::splat(1.0 / 3.0)).is_none());

@@ -1,13 +1,14 @@
 //! Direct light on an element: light rays and cosine rays, combined by multiple importance sampling.
 //!
 //! ```text
-//! E_i = (1 / A_i) ∫_Ai ∫ Be(y) cos / pi dw dx  ≈  Σ_k Be(y_k) p_c / (n_c p_c + n_l p_l),      p_c = cos / pi
+//! E_i = (1 / A_i) ∫_Ai ∫ Be(y) cos / pi dw dx  ≈  Σ_k Be(y_k) cos_k / pi · d_k / (d_c² + d_l²),      d_c = n_c p_c,  d_l = n_l p_l
 //! ```
 //!
-//! for n_c rays in cosine-distributed directions and n_l in directions of a [`LightSampler`], with densities p_c and p_l, from
-//! uniform points of the element; y_k is what ray k sees (the balance heuristic of Veach & Guibas, Optimally Combining Sampling
-//! Techniques, SIGGRAPH 1995). A light ray counts only if it ends on the emitter at which it aims. Both kinds of rays meet surfaces
-//! as all rays do, so no light is seen by one kind and not by the other. Unbiased, and no ray counts for more than `Be / n_c`.
+//! for n_c rays in cosine-distributed directions, density `p_c = cos / pi`, and n_l in directions of a [`LightSampler`], density p_l,
+//! from uniform points of the element; y_k is what ray k sees, and d_k the d of its own kind (the power heuristic of Veach & Guibas,
+//! Optimally Combining Sampling Techniques, SIGGRAPH 1995: the balance heuristic lets the few cosine rays that hit a small lamp spoil
+//! what light rays know well). A light ray counts only if it ends on the emitter at which it aims. Both kinds of rays meet
+//! surfaces as all rays do, so no light is seen by one kind and not by the other. Unbiased, and no ray counts for more than `Be / n_c`.
 //!
 //! Lights without extent: `I cos / r²` at uniform points of the element, a shadow ray each. Cost: one ray a sample.
 
@@ -46,6 +47,8 @@ pub struct Sight {
     /// Density [1/sr] of its direction among light rays, and among cosine rays.
     pub light: f32,
     pub cosine: f32,
+    /// Whether it was a light ray that has seen it.
+    pub aimed: bool,
 }
 
 /// The direct light of a problem, element by element; holds working memory.
@@ -108,7 +111,7 @@ impl<'a> DirectLight<'a> {
             };
             if let Some((emitter, light)) = seen {
                 let emission = self.sampler.emitters()[emitter as usize].emission;
-                each(Sight { spot: sent.spot, emission, light, cosine: sent.cosine });
+                each(Sight { spot: sent.spot, emission, light, cosine: sent.cosine, aimed: sent.aim.is_some() });
             }
         }
         self.rays.len() as u64
@@ -146,6 +149,8 @@ impl<'a> DirectLight<'a> {
     pub fn lamps(&mut self, element: u32, points: u32, mut each: impl FnMut(Spot, Rgb)) -> u64 {
         let lights: &[Light] = &self.problem.scene.lights;
         let departure = Departure::new(self.problem, element, Footprint::WHOLE);
+        // From anywhere in the scene, nothing is farther away.
+        let farthest = 2.0 * self.problem.geometry.bounding_sphere().1;
         let mut traced = 0;
         for (light, number) in lights.iter().zip(0..) {
             let points = (points / lights.len() as u32).max(FEWEST_POINTS);
@@ -157,7 +162,7 @@ impl<'a> DirectLight<'a> {
                 let start = departure.start(uv);
                 if let Some(shine) = lamp::shine(light, start.origin, start.normal) {
                     self.rays.push(start.ray(shine.direction));
-                    reach.push(shine.distance);
+                    reach.push(shine.distance.min(farthest));
                     given.push((Spot::at(uv), shine.irradiance / points as f32));
                 }
             }
@@ -184,7 +189,8 @@ impl<'a> DirectLight<'a> {
 impl Sight {
     /// What this ray adds to the irradiance [lux] of its element, which sends so many.
     pub fn irradiance(&self, rays: Rays) -> Rgb {
-        let density = rays.cosine as f32 * self.cosine + rays.light as f32 * self.light;
-        self.emission * (self.cosine / density)
+        let (cosine, light) = (rays.cosine as f32 * self.cosine, rays.light as f32 * self.light);
+        let own = if self.aimed { light } else { cosine };
+        self.emission * (self.cosine * own / (cosine * cosine + light * light))
     }
 }

@@ -43,24 +43,28 @@ impl Receiver {
         }
     }
 
-    /// About the irradiance [lux] that one emitter gives, were nothing in between: `Be omega cos / pi`, with the solid angle from
-    /// the centre and the mean of the cosines to the corners. 0 only if it gives none for certain.
+    /// About the irradiance [lux] that one emitter gives, were nothing in between, from what the centre sees: Lambert's formula if
+    /// all of the emitter is above the horizon, else its solid angle and the mean of the cosines to its corners. 0 only if it
+    /// gives none for certain.
     pub fn irradiance(&self, emitter: &Emitter) -> f32 {
         if self.flat && (self.is_above_none(emitter.corners) || is_behind(emitter, self.corners, self.tolerance)) {
             return 0.0;
         }
         let ways = emitter.corners.map(|corner| corner - self.center);
         let way = (ways[0] + ways[1] + ways[2]) / 3.0;
-        let size = self.radius * self.radius + emitter.area;
-        let facing = emitter.area / way.length_squared().max(size);
-        let seen = || {
-            let omega =
-                SphericalTriangle::new(emitter.corners, self.center).map_or(0.0, |seen| seen.solid_angle() as f32);
-            let cos = ways.iter().map(|way| way.normalize_or_zero().dot(self.normal).max(0.0)).sum::<f32>() / 3.0;
-            omega * cos
-        };
-        let sent = if self.flat { seen().max(FLOOR * facing) } else { facing };
+        let facing = emitter.area / way.length_squared().max(self.radius * self.radius + emitter.area);
+        let sent = if self.flat { self.projected(emitter, ways).max(FLOOR * facing) } else { facing };
         emitter.emission.luminance() * sent / PI
+    }
+
+    /// About the solid angle of `emitter`, weighted by the cosine; `ways` lead to its corners.
+    fn projected(&self, emitter: &Emitter, ways: [Vec3; 3]) -> f32 {
+        let Some(seen) = SphericalTriangle::new(emitter.corners, self.center) else { return 0.0 };
+        if ways.iter().all(|way| way.dot(self.normal) >= -self.tolerance) {
+            return seen.projected(self.normal) as f32;
+        }
+        let cosines = ways.map(|way| way.normalize_or_zero().dot(self.normal).max(0.0));
+        seen.solid_angle() as f32 * cosines.iter().sum::<f32>() / 3.0
     }
 
     fn is_above_none(&self, corners: [Vec3; 3]) -> bool {
