@@ -150,7 +150,6 @@ fn lamps_light_a_floor_by_their_form_factors() {
         let problem = cut(rectangles(&parts), 60);
         for rays in KINDS {
             let (moments, exact) = (of_first_object(&problem, &runs(&problem, rays)), f64::from(BE) * factor);
-            println!("{what}, {rays:?}: {} of {exact}", moments.mean);
             assert_t("direct light: rectangles", t_of(moments, exact), RUNS as f64 - 1.0);
         }
         let off = of_first_object(&problem, &runs_with(&problem, KINDS[0], |s| Sight { light: s.light / 1.02, ..s }));
@@ -203,7 +202,9 @@ fn what_guides_light_rays_is_near_the_exact_irradiance() {
 /// Differences of direct light and shooting in a black room, where all light is direct.
 #[test]
 fn shooting_gives_the_same_direct_light() {
-    for (name, elements, rays) in [("cubes", 300, 100_000), ("cornell-box", 300, 100_000), ("office", 1, 600_000)] {
+    for (name, elements, rays) in
+        [("cubes", 300, 100_000), ("cornell-box", 300, 100_000), ("office:size=1", 1, 400_000)]
+    {
         let mut black = scene(name);
         black.materials.iter_mut().for_each(|m| m.reflectivity = Rgb::BLACK);
         let problem = cut(black, elements);
@@ -218,12 +219,11 @@ fn shooting_gives_the_same_direct_light() {
         let sampled = differences(&runs(&problem, KINDS[2]));
         for projection in &broad {
             let deviation = projection.deviation(&sampled, &nothing);
-            println!("{name}: {deviation:?}");
             assert_t("direct light: shooting", deviation.t, deviation.dof);
         }
-        let bright = differences(&runs_with(&problem, KINDS[2], |s| Sight { emission: s.emission * 1.02, ..s }));
+        let bright = differences(&runs_with(&problem, KINDS[2], |s| Sight { emission: s.emission * 1.05, ..s }));
         let total = broad[0].deviation(&bright, &nothing);
-        assert!(refutes(p_of_t(total.t, total.dof)), "{name}: 2 % more light is seen: {total:?}");
+        assert!(refutes(p_of_t(total.t, total.dof)), "{name}: 5 % more light is seen: {total:?}");
     }
 }
 
@@ -278,7 +278,9 @@ fn the_sun_lights_a_floor_exactly() {
         let problem = cut(scene, 10);
         let sampler = LightSampler::new(&problem);
         let sequence = OwenSobol::new(1);
-        let (irradiance, rays) = DirectLight::new(&problem, &sampler, &sequence).irradiance(0, KINDS[0]);
+        let on_floor = |&e: &u32| problem.mesh.triangle(e) < 2;
+        let first = problem.mesh.elements().find(on_floor).unwrap();
+        let (irradiance, rays) = DirectLight::new(&problem, &sampler, &sequence).irradiance(first, KINDS[0]);
         let exact = INTENSITY * -direction.z * share;
         assert!((irradiance - exact).to_array().iter().all(|v| v.abs() < 1e-4), "{irradiance:?} {exact:?}");
         assert_eq!(rays, 64);

@@ -149,8 +149,6 @@ impl<'a> DirectLight<'a> {
     pub fn lamps(&mut self, element: u32, points: u32, mut each: impl FnMut(Spot, Rgb)) -> u64 {
         let lights: &[Light] = &self.problem.scene.lights;
         let departure = Departure::new(self.problem, element, Footprint::WHOLE);
-        // From anywhere in the scene, nothing is farther away.
-        let farthest = 2.0 * self.problem.geometry.bounding_sphere().1;
         let mut traced = 0;
         for (light, number) in lights.iter().zip(0..) {
             let points = (points / lights.len() as u32).max(FEWEST_POINTS);
@@ -162,7 +160,7 @@ impl<'a> DirectLight<'a> {
                 let start = departure.start(uv);
                 if let Some(shine) = lamp::shine(light, start.origin, start.normal) {
                     self.rays.push(start.ray(shine.direction));
-                    reach.push(shine.distance.min(farthest));
+                    reach.push(shine.distance);
                     given.push((Spot::at(uv), shine.irradiance / points as f32));
                 }
             }

@@ -97,3 +97,69 @@ fn sphere_around(corners: [Vec3; 3]) -> (Vec3, f32) {
     let center = (corners[0] + corners[1] + corners[2]) / 3.0;
     (center, corners.iter().map(|corner| corner.distance(center)).fold(0.0, f32::max))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Resolution;
+    use crate::scene::builtin::builtin;
+
+    /// In a room of many lamps: the probabilities of all emitters sum to one, and each is the share of the numbers that choose it.
+    #[test]
+    fn emitters_are_chosen_with_the_probabilities_stated() {
+        const NUMBERS: u32 = 1 << 14;
+        let problem = Problem::new(builtin("office").unwrap(), Resolution::Elements(1)).unwrap();
+        let sampler = LightSampler::new(&problem);
+        assert!(sampler.emitters.len() > 1000);
+        let mut cut = Cut::default();
+        for e in problem.mesh.elements().step_by(1999) {
+            sampler.cut(&Receiver::new(&problem, e), &mut cut);
+            let mut chosen = vec![0; sampler.emitters.len()];
+            for k in 0..NUMBERS {
+                let choice = cut.choose(&sampler.flux_before, k as f32 / NUMBERS as f32).unwrap();
+                assert!((0.0..1.0).contains(&choice.rest));
+                let stated = cut.probability(&sampler.flux_before, choice.emitter);
+                assert!((choice.probability / stated - 1.0).abs() < 1e-9, "{choice:?} {stated}");
+                chosen[choice.emitter as usize] += 1;
+            }
+            let stated = (0..).zip(&chosen).map(|(k, _)| cut.probability(&sampler.flux_before, k));
+            let mut total = 0.0;
+            for (stated, &chosen) in stated.zip(&chosen) {
+                total += stated;
+                assert!(
+                    (stated * f64::from(NUMBERS) - f64::from(chosen)).abs() <= 1.0,
+                    "element {e}: {stated} {chosen}"
+                );
+            }
+            assert!((total - 1.0).abs() < 1e-9, "element {e}: {total}");
+        }
+    }
+
+    /// The other way round: seen from where it hits, a direction has the density with which it was chosen.
+    #[test]
+    fn rays_that_hit_what_they_aim_at_have_the_density_stated() {
+        for name in ["box", "sphere"] {
+            let problem = Problem::new(builtin(name).unwrap(), Resolution::Elements(200)).unwrap();
+            let sampler = LightSampler::new(&problem);
+            let mut cut = Cut::default();
+            for e in problem.mesh.elements() {
+                let receiver = Receiver::new(&problem, e);
+                let eye = receiver.center + receiver.normal * problem.geometry.lift();
+                sampler.cut(&receiver, &mut cut);
+                for k in 0..32u8 {
+                    let s = Vec2::new((f32::from(k) + 0.5) / 32.0, (f32::from(k) * 0.618).fract());
+                    let Some((emitter, aim)) = sampler.aim(&problem, &cut, eye, s) else { continue };
+                    let ray = Ray { origin: eye, direction: aim.direction, from: problem.mesh.triangle(e) };
+                    let mut hit = [Hit::MISS];
+                    problem.geometry.closest(&[ray], &mut hit);
+                    let grazing = aim.direction.dot(receiver.normal) < 0.05;
+                    if grazing || sampler.emitter_at(&problem, &hit[0]) != Some(emitter) {
+                        continue;
+                    }
+                    let density = sampler.density(&problem, &cut, &ray, &hit[0], emitter);
+                    assert!((density / aim.density - 1.0).abs() < 1e-3, "{name}, element {e}: {density} {aim:?}");
+                }
+            }
+        }
+    }
+}
