@@ -1,10 +1,12 @@
-//! Small mathematics that everything else stands on: colour, frames, warps, moments.
+//! Small mathematics that everything else stands on: colour, frames, warps, moments, spherical triangles.
 
 pub mod color;
 pub mod frame;
 pub mod hash;
 pub mod moments;
+pub mod spherical_triangle;
 pub mod warp;
 
 pub use color::Rgb;
 pub use frame::Frame;
+pub use spherical_triangle::SphericalTriangle;

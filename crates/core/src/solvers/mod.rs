@@ -3,11 +3,13 @@
 mod allocation;
 pub mod budget;
 pub mod deterministic;
+pub mod direct_light;
 mod gathering;
 pub mod monte_carlo;
 mod replicates;
 mod shooting;
 
+pub use direct_light::DirectLight;
 pub use monte_carlo::MonteCarlo;
 
 use crate::form_factors::Row;

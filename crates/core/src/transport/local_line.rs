@@ -8,7 +8,7 @@ use crate::geometry::Ray;
 use crate::math::Frame;
 use crate::math::warp::square_to_cosine_hemisphere;
 use crate::sampling::Sample;
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 /// An element from which lines depart.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +22,22 @@ pub struct Departure<'a> {
     footprint: Footprint,
 }
 
+/// A point of an element, lifted off it.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// World position [m].
+    pub origin: Vec3,
+    pub normal: Vec3,
+    triangle: u32,
+}
+
+impl Start {
+    /// The line into the unit vector `direction`.
+    pub fn ray(&self, direction: Vec3) -> Ray {
+        Ray { origin: self.origin, direction, from: self.triangle }
+    }
+}
+
 impl<'a> Departure<'a> {
     /// Lines from the part of `element` that `footprint` covers.
     pub fn new(problem: &'a Problem, element: u32, footprint: Footprint) -> Departure<'a> {
@@ -32,11 +48,16 @@ impl<'a> Departure<'a> {
 
     /// The local line that belongs to `sample`: its first two numbers choose the point, the others the direction.
     pub fn ray(&self, [x1, x2, x3, x4]: Sample) -> Ray {
-        let cell = self.footprint.point(Vec2::new(x1, x2));
-        let uv = self.corner + cell.x * self.edges[0] + cell.y * self.edges[1];
+        let start = self.start(self.footprint.point(Vec2::new(x1, x2)));
+        let direction = Frame::about(start.normal).to_world(square_to_cosine_hemisphere(Vec2::new(x3, x4)));
+        start.ray(direction)
+    }
+
+    /// Where lines start at barycentric coordinates `uv` of the element.
+    pub fn start(&self, uv: Vec2) -> Start {
+        let uv = self.corner + uv.x * self.edges[0] + uv.y * self.edges[1];
         let (point, front) = self.problem.geometry.surface(self.triangle, uv);
         let normal = if self.back { -front } else { front };
-        let direction = Frame::about(normal).to_world(square_to_cosine_hemisphere(Vec2::new(x3, x4)));
-        Ray { origin: point + normal * self.problem.geometry.lift(), direction, from: self.triangle }
+        Start { origin: point + normal * self.problem.geometry.lift(), normal, triangle: self.triangle }
     }
 }
