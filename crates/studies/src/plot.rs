@@ -27,6 +27,9 @@ const LETTER: f64 = 7.2;
 /// Pixels of a PNG for one of the SVG.
 const PNG_SCALE: f32 = 1.5;
 
+/// Least quotient of the ends of an axis.
+const LEAST_RANGE: f64 = 12.0;
+
 const INK: RGBColor = RGBColor(45, 45, 48);
 const GRID: RGBColor = RGBColor(226, 226, 230);
 const GUIDE: RGBColor = RGBColor(150, 150, 156);
@@ -185,11 +188,13 @@ fn panel(area: &Area, plot: &PlotSpec, name: &str, curves: &[Curve]) -> Result<(
     Ok(())
 }
 
-/// From the smallest to the largest value, and a little more.
+/// From the smallest to the largest value and a little more, but wide enough that some ticks lie in it.
 fn range(values: impl Iterator<Item = f64> + Clone, more: f64) -> Range<f64> {
     let (low, high) =
         values.fold((f64::MAX, f64::MIN_POSITIVE), |(low, high), value| (low.min(value), high.max(value)));
-    low.min(high) / more..high * more
+    let (low, high) = (low.min(high) / more, high * more);
+    let wider = (LEAST_RANGE / (high / low)).max(1.0).sqrt();
+    low / wider..high * wider
 }
 
 /// A label for every power of ten.
