@@ -109,6 +109,8 @@ pub fn run(
         OutputFile::create(&path)?.finish(&table.to_csv())?;
         done += point.work();
     }
+    // What is concluded follows from the file, as it does in a run that was stopped and goes on.
+    let table = Table::read(&path, measure.columns())?;
     Ok(Outcome::Complete(report::write(&spec, &table, folder)?))
 }
 
