@@ -113,7 +113,10 @@ fn in_short(progress: &Progress, start: Instant) -> String {
 }
 
 fn in_words(report: &Report, folder: &Path) -> String {
-    let mut text = format!("{}\n\nSlopes, with 95 % confidence\n", report.title);
+    let mut text = format!("{}\n", report.title);
+    if !report.fits.is_empty() {
+        text += "\nSlopes, with 95 % confidence\n";
+    }
     let width = |names: &mut dyn Iterator<Item = &str>| names.map(|name| name.chars().count()).max().unwrap_or(0);
     let scene = width(&mut report.fits.iter().map(|fit| fit.scene.as_str()));
     let series = width(&mut report.fits.iter().map(|fit| fit.series.as_str()));

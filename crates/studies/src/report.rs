@@ -17,7 +17,7 @@ pub struct Report {
     pub files: Vec<PathBuf>,
 }
 
-/// Fits, draws and judges `table`, and writes `fits.csv` and the plots into `folder`.
+/// Fits, draws and judges `table`, and writes `fits.csv`, if anything was fitted, and the plots into `folder`.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -30,7 +30,9 @@ pub fn write(spec: &Spec, table: &Table, folder: &Path) -> Result<Report, Error>
         files.push(path);
         Ok(())
     };
-    keep("fits.csv".to_owned(), slopes_as_csv(&fits).as_bytes())?;
+    if !fits.is_empty() {
+        keep("fits.csv".to_owned(), slopes_as_csv(&fits).as_bytes())?;
+    }
     for spec_of_plot in &spec.plots {
         let svg = plot::svg(spec, spec_of_plot, table)?;
         keep(format!("{}.svg", spec_of_plot.file), svg.as_bytes())?;
