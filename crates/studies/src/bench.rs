@@ -2,17 +2,15 @@
 
 use crate::Error;
 use crate::spec::{SceneSpec, Spec};
-use isolux_core::math::Rgb;
 use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
 use isolux_core::sampling::SequenceName;
-use isolux_core::scene::builtin::{builtin, is_builtin};
+use isolux_core::scene::builtin::builtin;
 use isolux_core::solvers::monte_carlo::axes::Walk;
 use isolux_core::solvers::monte_carlo::{Budget, Method, MonteCarlo, Settings};
 use isolux_core::solvers::{Part, Solver};
 use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
-use isolux_io::import::{self, ImportOptions};
 use isolux_io::{files, solution_file};
 use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
@@ -24,8 +22,7 @@ use std::sync::Arc;
 pub struct Reference {
     /// Irradiance [lux], luminance, of every element.
     irradiance: Vec<f64>,
-    /// Its standard errors [lux], and its own relative error, to be taken off.
-    std_error: Vec<f64>,
+    /// Its own relative error, to be taken off.
     error: f64,
 }
 
@@ -50,16 +47,10 @@ impl Bench {
     /// If there is no such scene.
     pub fn problem(&mut self, scene: &SceneSpec, elements: u64) -> Result<Arc<Problem>, Error> {
         let key = (scene.scene.clone(), elements);
-        if let Some((name, problem)) = self.problem.as_ref().filter(|(name, _)| *name == key) {
-            debug_assert_eq!(*name, key);
+        if let Some((_, problem)) = self.problem.as_ref().filter(|(name, _)| *name == key) {
             return Ok(Arc::clone(problem));
         }
-        let geometry = if is_builtin(&scene.scene) {
-            builtin(&scene.scene)?
-        } else {
-            import::read_scene(Path::new(&scene.scene), &ImportOptions::default())?
-        };
-        let problem = Arc::new(Problem::new(geometry, Resolution::Elements(elements))?);
+        let problem = Arc::new(Problem::new(builtin(&scene.scene)?, Resolution::Elements(elements))?);
         self.problem = Some((key, Arc::clone(&problem)));
         Ok(problem)
     }
@@ -81,26 +72,20 @@ impl Bench {
         let problem = self.problem(scene, scene.elements)?;
         let rays = spec.reference_rays.unwrap_or(1e8) as u64;
         let kind = if walk == Walk::Discrete { "shirley" } else { "particle-tracing" };
-        let file =
-            Path::new(&scene.scene).file_name().unwrap_or_default().to_string_lossy().replace([':', '=', '.'], "-");
-        let name = format!("reference-{file}-{kind}-{rays}.isolux");
+        let name = format!("reference-{}-{kind}-{rays}.isolux", scene.scene.replace([':', '='], "-"));
         if let Some((_, reference)) = self.references.iter().find(|(known, _)| *known == name) {
             return Ok(Some(Arc::clone(reference)));
         }
         let reference = match scene.exact {
-            Some(exact) => {
-                let elements = problem.mesh.len();
-                Reference { irradiance: vec![exact; elements], std_error: vec![0.0; elements], error: 0.0 }
-            }
+            Some(exact) => Reference { irradiance: vec![exact; problem.mesh.len()], error: 0.0 },
             None => {
                 let path = self.folder.join(&name);
                 let method = Method { sequence: SequenceName::OWEN_SOBOL, ..Method::named(kind)? };
                 let settings = Settings { seed: 1_000_000, ..single(method, rays, 1) };
-                let settings = Settings { replicates: 16, leaving: spec.leaving.into(), ..settings };
+                let settings = Settings { replicates: 16, ..settings };
                 let Some(solution) = reference_solution(&problem, &path, settings, watch)? else { return Ok(None) };
-                let luminances = |lux: &[Rgb]| lux.iter().map(|lux| lux.luminance_f64()).collect();
-                let (irradiance, std_error) = (luminances(&solution.irradiance), luminances(&solution.std_error));
-                Reference { irradiance, std_error, error: solution.rms_error(&problem) }
+                let irradiance = solution.irradiance.iter().map(|lux| lux.luminance_f64()).collect();
+                Reference { irradiance, error: solution.rms_error(&problem) }
             }
         };
         self.references.push((name, Arc::new(reference)));
@@ -191,24 +176,6 @@ impl Reference {
     /// The same of a solution.
     pub fn error(&self, problem: &Problem, solution: &Solution) -> f64 {
         self.error_of(problem, |e| solution.irradiance[e as usize].luminance_f64())
-    }
-
-    /// Relative errors: that of [`Reference::error`]; the RMS over the elements, each relative to its own irradiance; and the median of
-    /// their absolute values. Elements that are darker than a hundredth of the mean count as if they were as bright as that.
-    pub fn errors(&self, problem: &Problem, solution: &Solution) -> [f64; 3] {
-        let mesh = &problem.mesh;
-        let weighted = mesh.elements().map(|e| f64::from(mesh.area(e)) * self.irradiance[e as usize]).sum::<f64>();
-        let least = 0.01 * weighted / mesh.total_area();
-        let relative = |e: u32, value: f64| value / self.irradiance[e as usize].max(least);
-        let mut absolute: Vec<f64> = mesh
-            .elements()
-            .map(|e| relative(e, solution.irradiance[e as usize].luminance_f64() - self.irradiance[e as usize]).abs())
-            .collect();
-        let own = mesh.elements().map(|e| relative(e, self.std_error[e as usize]).powi(2)).sum::<f64>();
-        let square = (absolute.iter().map(|error| error * error).sum::<f64>() - own) / mesh.len() as f64;
-        let middle = absolute.len() / 2;
-        let median = *absolute.select_nth_unstable_by(middle, f64::total_cmp).1;
-        [self.error(problem, solution), square.max(0.0).sqrt(), median]
     }
 
     /// Irradiance [lux] of element `e`.

@@ -3,7 +3,7 @@
 use crate::bench::Bench;
 use crate::report::{self, Report};
 use crate::results::{Row, Table};
-use crate::spec::{SceneSpec, Spec};
+use crate::spec::Spec;
 use crate::{Error, Study, machine, measures};
 use isolux_io::files::{self, OutputFile};
 use std::ops::ControlFlow;
@@ -117,7 +117,6 @@ pub fn run(
 fn effective(study: Study, options: Options) -> Result<Spec, Error> {
     let spec = study.spec()?;
     let mut spec = if options.quick { spec.quick() } else { spec };
-    spec.scenes.retain(SceneSpec::is_there);
     spec.seeds = options.seeds.unwrap_or(spec.seeds).max(1);
     Ok(spec)
 }

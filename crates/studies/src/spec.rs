@@ -1,11 +1,8 @@
 //! `study.toml`: the question, and all that is needed to answer it.
 
 use crate::Error;
-use isolux_core::scene::builtin::is_builtin;
-use isolux_core::transport;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -23,9 +20,6 @@ pub struct Spec {
     pub seeds: u64,
     /// Rays of the reference solution of a scene without an exact one.
     pub reference_rays: Option<f64>,
-    /// From where pooled light leaves an element in the reference: all of it, unless it says otherwise.
-    #[serde(default)]
-    pub leaving: Leaving,
     pub series: Vec<Series>,
     pub plots: Vec<PlotSpec>,
     #[serde(default)]
@@ -34,30 +28,12 @@ pub struct Spec {
     quick: Quick,
 }
 
-/// See [`transport::Leaving`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Leaving {
-    #[default]
-    WholeElement,
-    WhereLanded,
-}
-
-impl From<Leaving> for transport::Leaving {
-    fn from(leaving: Leaving) -> transport::Leaving {
-        match leaving {
-            Leaving::WholeElement => transport::Leaving::WholeElement,
-            Leaving::WhereLanded => transport::Leaving::WhereLanded,
-        }
-    }
-}
-
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SceneSpec {
     /// As plots call it.
     pub name: String,
-    /// A built-in scene with its parameters, or a file; a scene whose file is not there is left out.
+    /// A built-in scene with its parameters.
     pub scene: String,
     pub elements: u64,
     /// Irradiance [lux] on all elements, where it is known.
@@ -171,7 +147,7 @@ impl Spec {
             |scene: &SceneSpec| other.scenes.iter().all(|known| known.name != scene.name || same(known, scene));
         let agrees =
             |series: &Series| other.series.iter().all(|known| known.name != series.name || known.axes == series.axes);
-        let what = |spec: &Spec| (spec.measure.clone(), spec.reference_rays, spec.leaving);
+        let what = |spec: &Spec| (spec.measure.clone(), spec.reference_rays);
         what(self) == what(other) && self.series.iter().all(agrees) && self.scenes.iter().all(common)
     }
 
@@ -205,13 +181,6 @@ impl Spec {
             None if self.scenes.is_empty() || self.at.is_empty() => Err("there is nothing to measure".to_owned()),
             None => Ok(()),
         }
-    }
-}
-
-impl SceneSpec {
-    /// Whether it is built in, or its file is there.
-    pub fn is_there(&self) -> bool {
-        is_builtin(&self.scene) || Path::new(&self.scene).exists()
     }
 }
 
