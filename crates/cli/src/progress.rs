@@ -64,18 +64,22 @@ impl Display {
     }
 
     /// Shows how far work has come that is no solver's; `what` is asked for only if it is shown.
-    pub fn work(&mut self, share: f64, next_line: &mut Duration, start: Instant, what: impl Fn() -> String) {
+    pub fn work(&mut self, share: f64, next: &mut Duration, start: Instant, what: impl Fn() -> String) {
+        if start.elapsed() < *next {
+            return;
+        }
         match self {
             Display::Bar(bar) => {
                 bar.set_style(style("{spinner:.cyan} {bar:20.cyan/dim} {msg}"));
                 bar.set_position((share * STEPS as f64) as u64);
                 bar.set_message(what());
+                *next = start.elapsed() + REDRAW;
             }
-            Display::Lines if start.elapsed() >= *next_line => {
+            Display::Lines => {
                 terminal::say(&format!("{:3.0} % · {}", 100.0 * share, what()));
-                *next_line = start.elapsed() + LINE_EVERY;
+                *next = start.elapsed() + LINE_EVERY;
             }
-            _ => {}
+            Display::Hidden => {}
         }
     }
 

@@ -81,8 +81,7 @@ impl Bench {
             None => {
                 let path = self.folder.join(&name);
                 let method = Method { sequence: SequenceName::OWEN_SOBOL, ..Method::named(kind)? };
-                let settings = Settings { seed: 1_000_000, ..single(method, rays, 1) };
-                let settings = Settings { replicates: 16, ..settings };
+                let settings = Settings { replicates: 16, ..single(method, rays, 1_000_000) };
                 let Some(solution) = reference_solution(&problem, &path, settings, watch)? else { return Ok(None) };
                 let irradiance = solution.irradiance.iter().map(|lux| lux.luminance_f64()).collect();
                 Reference { irradiance, error: solution.rms_error(&problem) }
@@ -161,21 +160,16 @@ impl Drive {
 
 impl Reference {
     /// Area-weighted RMS error of luminance irradiance, relative to the reference's mean; the reference's own error is taken off.
-    pub fn error_of(&self, problem: &Problem, irradiance: impl Fn(u32) -> f64) -> f64 {
+    pub fn error(&self, problem: &Problem, solution: &Solution) -> f64 {
         let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
         for e in problem.mesh.elements() {
-            let (weight, exact) = (f64::from(problem.mesh.area(e)), self.irradiance[e as usize]);
+            let (weight, exact) = (f64::from(problem.mesh.area(e)), self.on(e));
             area += weight;
             sum += weight * exact;
-            sum_sq += weight * (irradiance(e) - exact).powi(2);
+            sum_sq += weight * (solution.irradiance[e as usize].luminance_f64() - exact).powi(2);
         }
         let square = sum_sq / area / (sum / area).powi(2);
         (square - self.error.powi(2)).max(0.0).sqrt()
-    }
-
-    /// The same of a solution.
-    pub fn error(&self, problem: &Problem, solution: &Solution) -> f64 {
-        self.error_of(problem, |e| solution.irradiance[e as usize].luminance_f64())
     }
 
     /// Irradiance [lux] of element `e`.

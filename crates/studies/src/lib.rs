@@ -7,7 +7,7 @@
 mod bench;
 mod error;
 pub mod fit;
-mod machine;
+pub mod machine;
 pub mod measures;
 pub mod plot;
 pub mod report;
@@ -16,6 +16,7 @@ pub mod run;
 mod series;
 pub mod signs;
 pub mod spec;
+mod task;
 
 pub use error::Error;
 pub use run::{Options, Outcome, Progress, run};

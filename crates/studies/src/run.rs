@@ -4,6 +4,7 @@ use crate::bench::Bench;
 use crate::report::{self, Report};
 use crate::results::{Row, Table};
 use crate::spec::Spec;
+use crate::task::Task;
 use crate::{Error, Study, machine, measures};
 use isolux_io::files::{self, OutputFile};
 use std::ops::ControlFlow;
@@ -82,8 +83,7 @@ pub fn run(
     let is_done = |table: &Table, point: &Point| {
         let (scene, series) = (&spec.scenes[point.scene].name, &spec.series[point.series].name);
         let same = |row: &Row| row.scene == *scene && row.series == *series && row.seed == point.seed;
-        // A measure that follows a run has rows of its own places.
-        table.rows.iter().any(|row| same(row) && (row.at == point.at || spec.at.len() == 1))
+        table.rows.iter().any(|row| same(row) && (row.at == point.at || measure.has_own_places()))
     };
     let left: Vec<Point> = points.iter().copied().filter(|point| !is_done(&table, point)).collect();
     let work_of = |points: &[Point]| points.iter().map(Point::work).sum::<f64>();
@@ -102,15 +102,18 @@ pub fn run(
                 share_of_left: done / all_left,
             })
         };
-        let Some(rows) = measure.measure(&mut bench, &spec, point, &mut watch_step)? else {
+        let mut task = Task { bench: &mut bench, spec: &spec, point: *point, watch: &mut watch_step };
+        let Some(rows) = measure.measure(&mut task)? else {
             return Ok(Outcome::Stopped { points_done: points.len() - left.len() + k, points: points.len() });
         };
         table.rows.extend(rows);
         OutputFile::create(&path)?.finish(&table.to_csv())?;
         done += point.work();
     }
-    // What is concluded follows from the file, as it does in a run that was stopped and goes on.
-    let table = Table::read(&path, measure.columns())?;
+    // What is concluded follows from the file, as it does in a run that was stopped and goes on, and from the seeds that were asked
+    // for, even if there are more.
+    let mut table = Table::read(&path, measure.columns())?;
+    table.rows.retain(|row| row.seed <= spec.seeds);
     Ok(Outcome::Complete(report::write(&spec, &table, folder)?))
 }
 

@@ -15,6 +15,26 @@ impl Series {
         self.axes.get(axis).map(String::as_str)
     }
 
+    /// Whether it says `value` of `axis`, the only thing that can be said.
+    ///
+    /// # Errors
+    /// If it says something else.
+    pub fn says(&self, axis: &str, value: &str) -> Result<bool, Error> {
+        match self.axis(axis) {
+            Some(other) if other != value => Err(self.unknown(axis, other)),
+            said => Ok(said.is_some()),
+        }
+    }
+
+    /// The number that it says of `axis`.
+    ///
+    /// # Errors
+    /// If it says none.
+    pub fn number(&self, axis: &str) -> Result<u32, Error> {
+        let text = self.axis(axis).unwrap_or_default();
+        text.parse().map_err(|_| self.unknown(axis, text))
+    }
+
     /// The method of Monte Carlo that it names: `method`, changed by the axes.
     ///
     /// # Errors

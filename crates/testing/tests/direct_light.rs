@@ -10,8 +10,8 @@ use isolux_core::math::moments::Moments;
 use isolux_core::sampling::{OwenSobol, SequenceName};
 use isolux_core::scene::builtin::shapes::Builder;
 use isolux_core::scene::{Light, LightKind, Material, Scene};
-use isolux_core::solvers::direct_light::{DirectLight as Rounds, Settings};
-use isolux_core::transport::direct_light::{DirectLight, Rays, Sight};
+use isolux_core::solvers::direct_light::{DirectLight, Settings};
+use isolux_core::transport::direct_light::{DirectEstimator, Rays, Sight};
 use isolux_core::transport::light_sampling::{LightSampler, Receiver};
 use isolux_testing::budget::{assert_t, refutes};
 use isolux_testing::contour::{element_corners, form_factors};
@@ -31,7 +31,7 @@ fn runs_with(problem: &Problem, rays: Rays, fault: impl Fn(Sight) -> Sight + Syn
     let sampler = LightSampler::new(problem);
     let run = |seed| {
         let sequence = OwenSobol::new(seed);
-        let mut light = DirectLight::new(problem, &sampler, &sequence);
+        let mut light = DirectEstimator::new(problem, &sampler, &sequence);
         let of_element = |e| {
             let mut sum = Rgb::BLACK;
             light.look(e, rays, |sight| sum += fault(sight).irradiance(rays));
@@ -171,7 +171,7 @@ fn where_nothing_shines_there_is_no_light_and_no_ray() {
         let problem = cut(scene, 100);
         let sampler = LightSampler::new(&problem);
         let sequence = OwenSobol::new(1);
-        let mut light = DirectLight::new(&problem, &sampler, &sequence);
+        let mut light = DirectEstimator::new(&problem, &sampler, &sequence);
         for e in problem.mesh.elements() {
             assert_eq!(light.irradiance(e, KINDS[2]), (Rgb::BLACK, 0), "{problem:?}, element {e}");
         }
@@ -238,7 +238,7 @@ fn lamp_runs(kind: LightKind) -> (Problem, Vec<Vec<Rgb>>) {
     let sampler = LightSampler::new(&problem);
     let run = |seed| {
         let sequence = OwenSobol::new(seed);
-        let mut light = DirectLight::new(&problem, &sampler, &sequence);
+        let mut light = DirectEstimator::new(&problem, &sampler, &sequence);
         problem.mesh.elements().map(|e| light.irradiance(e, Rays { light: 16, cosine: 16 }).0).collect()
     };
     let runs = (0..RUNS).map(run).collect();
@@ -280,16 +280,16 @@ fn the_sun_lights_a_floor_exactly() {
         let sequence = OwenSobol::new(1);
         let on_floor = |&e: &u32| problem.mesh.triangle(e) < 2;
         let first = problem.mesh.elements().find(on_floor).unwrap();
-        let (irradiance, rays) = DirectLight::new(&problem, &sampler, &sequence).irradiance(first, KINDS[0]);
+        let (irradiance, rays) = DirectEstimator::new(&problem, &sampler, &sequence).irradiance(first, KINDS[0]);
         let exact = INTENSITY * -direction.z * share;
         assert!((irradiance - exact).to_array().iter().all(|v| v.abs() < 1e-4), "{irradiance:?} {exact:?}");
         assert_eq!(rays, 64);
     }
 }
 
-fn rounds(problem: &Problem, seed: u64, rounds: u32) -> Rounds {
+fn rounds(problem: &Problem, seed: u64, rounds: u32) -> DirectLight {
     let sequence: SequenceName = "owen-sobol".parse().unwrap();
-    let mut light = Rounds::new(problem, Settings { rays: 16, seed, sequence }).unwrap();
+    let mut light = DirectLight::new(problem, Settings { rays: 16, seed, sequence }).unwrap();
     while light.rounds() < rounds {
         for piece in 0..light.pieces() {
             let received = light.piece(problem, piece);
@@ -304,11 +304,11 @@ fn rounds(problem: &Problem, seed: u64, rounds: u32) -> Rounds {
 fn rounds_are_unbiased_and_honest() {
     let problem = problem("box", 48);
     let exact = exact_in_convex_room::<48>(&problem);
-    let all: Vec<Rounds> = (0..RUNS).into_par_iter().map(|seed| rounds(&problem, seed, 8)).collect();
+    let all: Vec<DirectLight> = (0..RUNS).into_par_iter().map(|seed| rounds(&problem, seed, 8)).collect();
     let means: Vec<Vec<Rgb>> =
         all.iter().map(|run| problem.mesh.elements().map(|e| run.estimate(e).0).collect()).collect();
     assert_exact("direct light: rounds", &problem, &means, &exact);
-    let surplus = |run: &Rounds| {
+    let surplus = |run: &DirectLight| {
         let of_element = |e: u32| {
             let (mean, variance) = run.estimate(e);
             let [r, g, b] = exact[e as usize];
@@ -333,7 +333,7 @@ fn pieces_are_pure_and_resumed_rounds_go_on() {
     let mut others: Vec<_> = pieces.into_par_iter().map(|piece| light.piece(&problem, piece)).collect();
     others.reverse();
     assert_eq!(in_order, others);
-    let mut resumed: Rounds = postcard::from_bytes(&postcard::to_stdvec(&light).unwrap()).unwrap();
+    let mut resumed: DirectLight = postcard::from_bytes(&postcard::to_stdvec(&light).unwrap()).unwrap();
     for run in [&mut light, &mut resumed] {
         for piece in 0..run.pieces() {
             let received = run.piece(&problem, piece);

@@ -10,6 +10,7 @@ use isolux_core::math::{Frame, Rgb};
 use isolux_core::sampling::{Sample, Sequence, SequenceName};
 use isolux_core::scene::builtin::shapes::Builder;
 use isolux_core::scene::{Material, Scene};
+use isolux_core::transport::bundle::crossings_per_area;
 use isolux_core::transport::{Bundle, Crossing, Span, global_line, spans};
 use isolux_testing::budget::{assert_chi2, assert_t, assert_z, refutes};
 use isolux_testing::exact::{BLOCKED_SQUARES, parallel_rectangles, perpendicular_rectangles};
@@ -140,7 +141,7 @@ fn bundle_deviations(problem: &Problem, exact: f64, draw: impl Fn(Sample) -> Sam
         bundle.spans(0..bundle.tiles(), |span| seen.count(problem, span));
         first.push(seen.first as f64);
         both.push(seen.both as f64);
-        expected = bundle.expected_crossings(1.0);
+        expected = crossings_per_area(problem, 40);
     }
     [(first.mean - expected) / first.std_error(), (both.mean - expected * exact) / both.std_error()]
 }

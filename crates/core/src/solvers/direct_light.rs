@@ -17,8 +17,8 @@
 use crate::math::Rgb;
 use crate::math::hash::derive;
 use crate::sampling::SequenceName;
-use crate::transport::LightSampler;
-use crate::transport::direct_light::{self, Rays, Sight};
+use crate::transport::direct_light::{Rays, Sight};
+use crate::transport::{DirectEstimator, LightSampler};
 use crate::{Error, Problem};
 
 /// Shares of cosine rays among which every element chooses.
@@ -108,7 +108,7 @@ impl DirectLight {
     pub fn piece(&self, problem: &Problem, piece: u64) -> Vec<Received> {
         let seed = derive(self.settings.seed, self.rounds_begun());
         let sequence = (self.settings.sequence.entry().make)(seed);
-        let mut light = direct_light::DirectLight::new(problem, &self.sampler, sequence.as_ref());
+        let mut light = DirectEstimator::new(problem, &self.sampler, sequence.as_ref());
         self.range(piece).map(|e| self.element(problem, &mut light, e as u32)).collect()
     }
 
@@ -165,7 +165,7 @@ impl DirectLight {
         self.rays
     }
 
-    fn element(&self, problem: &Problem, light: &mut direct_light::DirectLight, e: u32) -> Received {
+    fn element(&self, problem: &Problem, light: &mut DirectEstimator, e: u32) -> Received {
         let count = self.rays_of(problem, e);
         let rays = split(count, self.cosine_share(e));
         let mut sum = Rgb::BLACK;

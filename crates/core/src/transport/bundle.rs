@@ -27,6 +27,12 @@ use std::ops::Range;
 /// The stream of a sequence that bundles draw, beyond those of all elements and lamps.
 pub const STREAM: u64 = (1 << 32) + 1;
 
+/// How many crossings of each square metre of plane surfaces are expected of a bundle with `cells` by `cells` lines, in the mean over
+/// all directions: `1 / (2 a)` with `a = (2 R / cells)²` [1/m²].
+pub fn crossings_per_area(problem: &Problem, cells: u32) -> f64 {
+    (f64::from(cells) / f64::from(problem.geometry.bounding_sphere().1)).powi(2) / 8.0
+}
+
 /// A bundle of parallel lines, cut into tiles that can be evaluated independently.
 #[derive(Clone, Debug)]
 pub struct Bundle<'a> {
@@ -71,11 +77,6 @@ impl<'a> Bundle<'a> {
     /// The problem whose surfaces its lines cross.
     pub fn problem(&self) -> &'a Problem {
         self.problem
-    }
-
-    /// How many crossings of a plane surface of `area` [m²] are expected in the mean over all directions: `A / (2 a)`.
-    pub fn expected_crossings(&self, area: f32) -> f64 {
-        f64::from(area) / (2.0 * self.grid.cell_area())
     }
 
     /// Number of its tiles.

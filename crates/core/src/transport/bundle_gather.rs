@@ -15,6 +15,7 @@
 //! Source: Szirmay-Kalos & Purgathofer, Global ray-bundle tracing with hardware acceleration, EGWR 1998; the counted crossings are
 //! those of Sbert, EGWR 1993.
 
+use super::bundle::crossings_per_area;
 use super::{Bundle, Span, spans};
 use crate::geometry::raster::TileLists;
 use crate::math::Rgb;
@@ -138,10 +139,9 @@ pub fn gather_all(
     Ok(total)
 }
 
-/// Expected samples of a bundle with `cells` by `cells` lines: crossings of all elements, over all directions in the mean, `A_T /
-/// (2 a)` with `a = (2 R / cells)²`.
+/// Expected samples of a bundle with `cells` by `cells` lines: crossings of all elements, in the mean over all directions.
 pub fn samples_of_bundle(problem: &Problem, cells: u32) -> f64 {
-    problem.mesh.total_area() * (f64::from(cells) / f64::from(problem.geometry.bounding_sphere().1)).powi(2) / 8.0
+    problem.mesh.total_area() * crossings_per_area(problem, cells)
 }
 
 /// Cells along the edge of the grids of bundles that shall have `samples` samples together: so many that a triangle is crossed

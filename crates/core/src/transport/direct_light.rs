@@ -52,7 +52,7 @@ pub struct Sight {
 }
 
 /// The direct light of a problem, element by element; holds working memory.
-pub struct DirectLight<'a> {
+pub struct DirectEstimator<'a> {
     problem: &'a Problem,
     sampler: &'a LightSampler,
     sequence: &'a dyn Sequence,
@@ -73,11 +73,11 @@ struct Sent {
     aim: Option<(u32, f32)>,
 }
 
-impl<'a> DirectLight<'a> {
+impl<'a> DirectEstimator<'a> {
     /// Element e draws its numbers from streams 3e to 3e + 2 of `sequence`.
-    pub fn new(problem: &'a Problem, sampler: &'a LightSampler, sequence: &'a dyn Sequence) -> DirectLight<'a> {
+    pub fn new(problem: &'a Problem, sampler: &'a LightSampler, sequence: &'a dyn Sequence) -> DirectEstimator<'a> {
         let (samples, rays, sent, hits) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        DirectLight { problem, sampler, sequence, cut: Cut::default(), samples, rays, sent, hits }
+        DirectEstimator { problem, sampler, sequence, cut: Cut::default(), samples, rays, sent, hits }
     }
 
     /// Irradiance [lux] of `element` from all emitters and lights, and the number of rays it took.

@@ -15,7 +15,7 @@ pub mod span;
 pub use arrival::{Arrival, arrivals};
 pub use bundle::Bundle;
 pub use crossing::{Crossing, End, Met};
-pub use direct_light::DirectLight;
+pub use direct_light::DirectEstimator;
 pub use footprint::{Footprint, Leaving, Spot};
 pub use light_sampling::LightSampler;
 pub use local_line::{Departure, Start};

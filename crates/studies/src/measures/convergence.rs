@@ -3,12 +3,10 @@
 //! `at` is the number of samples that a run is asked for. The run is a single complete solution, not the mean of replicates: that
 //! would hide half of what better sample numbers do. A span of a global line counts as two samples, one for each end.
 
-use super::{Measure, row};
+use super::Measure;
 use crate::Error;
-use crate::bench::{Bench, Watch, single, solve};
 use crate::results::Row;
-use crate::run::Point;
-use crate::spec::Spec;
+use crate::task::Task;
 use isolux_core::solvers::monte_carlo::MonteCarlo;
 use std::time::Instant;
 
@@ -19,21 +17,15 @@ impl Measure for Convergence {
         &["samples", "seconds", "error"]
     }
 
-    fn measure(
-        &mut self,
-        bench: &mut Bench,
-        spec: &Spec,
-        point: &Point,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<Row>>, Error> {
-        let (scene, method) = (&spec.scenes[point.scene], spec.series[point.series].method()?);
-        let Some(reference) = bench.reference(spec, scene, method.walk, watch)? else { return Ok(None) };
-        let problem = bench.problem(scene, scene.elements)?;
-        let mut solver = MonteCarlo::new(&problem, single(method, point.at as u64, point.seed))?;
+    fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<Row>>, Error> {
+        let settings = task.single(task.point.at as u64)?;
+        let Some(reference) = task.reference(settings.method.walk)? else { return Ok(None) };
+        let problem = task.problem()?;
+        let mut solver = MonteCarlo::new(&problem, settings)?;
         let start = Instant::now();
-        let Some(solution) = solve(&mut solver, &problem, "", watch) else { return Ok(None) };
+        let Some(solution) = task.solve(&mut solver, &problem) else { return Ok(None) };
         let seconds = start.elapsed().as_secs_f64();
         let error = reference.error(&problem, &solution);
-        Ok(Some(vec![row(spec, point, point.at, vec![solution.work.rays as f64, seconds, error])]))
+        Ok(Some(vec![task.row(task.point.at, vec![solution.work.rays as f64, seconds, error])]))
     }
 }

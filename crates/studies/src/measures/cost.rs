@@ -5,12 +5,10 @@
 //! thousandth of the light is unshot; its error is that of its form factors, and so that this does not grow where elements get
 //! smaller, hemicubes have four pixels to each element of the scene. Reading and cutting the scene is not counted.
 
-use super::{Measure, row};
+use super::Measure;
 use crate::Error;
-use crate::bench::{Bench, Watch, single, solve};
 use crate::results::Row;
-use crate::run::Point;
-use crate::spec::Spec;
+use crate::task::Task;
 use isolux_core::form_factors;
 use isolux_core::solvers::Solver;
 use isolux_core::solvers::deterministic::{self, DETERMINISTIC};
@@ -37,30 +35,23 @@ impl Measure for Cost {
         &["elements", "rays", "seconds"]
     }
 
-    fn measure(
-        &mut self,
-        bench: &mut Bench,
-        spec: &Spec,
-        point: &Point,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<Row>>, Error> {
-        let (scene, series) = (&spec.scenes[point.scene], &spec.series[point.series]);
-        let problem = bench.problem(scene, point.at as u64)?;
+    fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<Row>>, Error> {
+        let problem = task.bench.problem(task.scene(), task.point.at as u64)?;
         let elements = problem.mesh.len() as u64;
-        let name = series.axis("method").unwrap_or_default();
+        let name = task.series().axis("method").unwrap_or_default();
         let entry = DETERMINISTIC.iter().find(|entry| entry.name == name);
         let mut solver: Box<dyn Solver> = match entry {
             Some(entry) => (entry.make)(&problem, &settings_for(elements))?,
             None => {
-                let settings = single(series.method()?, RAYS_PER_ELEMENT * elements, point.seed);
+                let settings = task.single(RAYS_PER_ELEMENT * elements)?;
                 Box::new(MonteCarlo::new(&problem, Settings { replicates: REPLICATES, ..settings })?)
             }
         };
         let start = Instant::now();
-        let Some(solution) = solve(solver.as_mut(), &problem, "", watch) else { return Ok(None) };
+        let Some(solution) = task.solve(solver.as_mut(), &problem) else { return Ok(None) };
         let seconds = start.elapsed().as_secs_f64();
         let times = if entry.is_some() { 1.0 } else { (solution.rms_error(&problem) / ACCURACY).powi(2) };
         let values = vec![elements as f64, solution.work.rays as f64 * times, seconds * times];
-        Ok(Some(vec![row(spec, point, point.at, values)]))
+        Ok(Some(vec![task.row(task.point.at, values)]))
     }
 }

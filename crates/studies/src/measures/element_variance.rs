@@ -9,13 +9,12 @@
 //! Each row has a place of its own: the mean area of the elements over which it is the mean. `reduced` is their variance over their
 //! irradiance, `relative` the standard deviation over the irradiance, and `ratio` the measured over the expected variance.
 
+use super::Measure;
 use super::bins::{Bin, by_area};
-use super::{Measure, row, rows_by};
 use crate::Error;
-use crate::bench::{Bench, Watch, single, solve};
+use crate::bench::solve;
 use crate::results::Row;
-use crate::run::Point;
-use crate::spec::Spec;
+use crate::task::{Task, rows_by};
 use isolux_core::form_factors::Settings as FactorSettings;
 use isolux_core::solvers::monte_carlo::{Budget, MonteCarlo, Settings};
 use isolux_core::{Problem, Solution};
@@ -37,40 +36,35 @@ impl Measure for ElementVariance {
         &["area", "variance", "expected", "ratio", "reduced", "relative"]
     }
 
-    fn measure(
-        &mut self,
-        bench: &mut Bench,
-        spec: &Spec,
-        point: &Point,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<Row>>, Error> {
-        let (scene, series) = (&spec.scenes[point.scene], &spec.series[point.series]);
-        let problem = bench.problem(scene, scene.elements)?;
-        if series.axis("estimate") == Some("gathering") {
-            let Some(radiosity) = self.radiosity(&problem, spec, point, watch)? else { return Ok(None) };
-            let rays = series.axis("rays").and_then(|rays| rays.parse().ok()).unwrap_or(64);
-            return gathering(&problem, &radiosity, rays, (spec, point), watch);
+    fn has_own_places(&self) -> bool {
+        true
+    }
+
+    fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<Row>>, Error> {
+        let problem = task.problem()?;
+        if task.series().says("estimate", "gathering")? {
+            let Some(radiosity) = self.radiosity(task, &problem)? else { return Ok(None) };
+            return gathering(task, &problem, radiosity);
         }
-        let settings = single(series.method()?, point.at as u64 * u64::from(RUNS), point.seed);
-        let settings = Settings { replicates: RUNS, ..settings };
-        let Some(solution) = solve(&mut MonteCarlo::new(&problem, settings)?, &problem, "", watch) else {
-            return Ok(None);
-        };
-        let flux = power(&problem, &solution) / point.at;
+        let rays = task.point.at;
+        let settings = Settings { replicates: RUNS, ..task.single(rays as u64 * u64::from(RUNS))? };
+        let mut solver = MonteCarlo::new(&problem, settings)?;
+        let Some(solution) = task.solve(&mut solver, &problem) else { return Ok(None) };
+        let flux = power(&problem, &solution) / rays;
         let variance = |e: u32| f64::from(solution.std_error[e as usize].luminance()).powi(2) * f64::from(RUNS);
         let irradiance = |e: u32| solution.irradiance[e as usize].luminance_f64();
         let bins = by_area(&problem, usize::MAX);
         let of_bin = |bin: &Bin| {
             let expected = bin.mean(|e| irradiance(e) * flux / f64::from(problem.mesh.area(e)));
-            values(spec, point, bin, bin.mean(variance), expected, bin.mean(irradiance))
+            values(task, bin, bin.mean(variance), expected, bin.mean(irradiance))
         };
         Ok(Some(bins.iter().map(of_bin).collect()))
     }
 }
 
-fn values(spec: &Spec, point: &Point, bin: &Bin, variance: f64, expected: f64, irradiance: f64) -> Row {
+fn values(task: &Task, bin: &Bin, variance: f64, expected: f64, irradiance: f64) -> Row {
     let (reduced, relative) = (variance / irradiance, variance.sqrt() / irradiance);
-    row(spec, point, bin.area, vec![bin.area, variance, expected, variance / expected, reduced, relative])
+    task.row(bin.area, vec![bin.area, variance, expected, variance / expected, reduced, relative])
 }
 
 /// Luminous flux [lm] that leaves all surfaces.
@@ -80,41 +74,31 @@ fn power(problem: &Problem, solution: &Solution) -> f64 {
 }
 
 impl ElementVariance {
-    fn radiosity(
-        &mut self,
-        problem: &Problem,
-        spec: &Spec,
-        point: &Point,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<f64>>, Error> {
-        if let Some((_, known)) = self.radiosity.as_ref().filter(|(scene, _)| *scene == point.scene) {
-            return Ok(Some(known.clone()));
+    /// The radiosities of the task's scene, solved once; `None` if somebody has stopped it.
+    fn radiosity(&mut self, task: &mut Task, problem: &Problem) -> Result<Option<&[f64]>, Error> {
+        let scene = task.point.scene;
+        if self.radiosity.as_ref().is_none_or(|(known, _)| *known != scene) {
+            let rays = task.spec.reference_rays.unwrap_or(1e7) as u64;
+            let settings = Settings { budget: Budget::Rays(rays), ..Settings::default() };
+            let mut solver = MonteCarlo::new(problem, settings)?;
+            let Some(solution) = solve(&mut solver, problem, "reference", task.watch) else { return Ok(None) };
+            let of_element = |e| solution.radiosity(problem, e).luminance_f64();
+            self.radiosity = Some((scene, problem.mesh.elements().map(of_element).collect()));
         }
-        let settings =
-            Settings { budget: Budget::Rays(spec.reference_rays.unwrap_or(1e7) as u64), ..Settings::default() };
-        let mut solver = MonteCarlo::new(problem, settings)?;
-        let Some(solution) = solve(&mut solver, problem, "reference", watch) else { return Ok(None) };
-        let known: Vec<f64> = problem.mesh.elements().map(|e| solution.radiosity(problem, e).luminance_f64()).collect();
-        self.radiosity = Some((point.scene, known.clone()));
-        Ok(Some(known))
+        Ok(self.radiosity.as_ref().map(|(_, radiosity)| radiosity.as_slice()))
     }
 }
 
-fn gathering(
-    problem: &Problem,
-    radiosity: &[f64],
-    rays: u32,
-    (spec, point): (&Spec, &Point),
-    watch: &mut Watch,
-) -> Result<Option<Vec<Row>>, Error> {
+fn gathering(task: &mut Task, problem: &Problem, radiosity: &[f64]) -> Result<Option<Vec<Row>>, Error> {
+    let (rays, first) = (task.series().number("rays")?, task.point.seed * u64::from(RUNS));
     let estimate = |run| {
-        let seed = point.seed * u64::from(RUNS) + u64::from(run);
-        rows_by("local-lines", problem, &FactorSettings { rays, seed, ..FactorSettings::default() })
+        let settings = FactorSettings { rays, seed: first + u64::from(run), ..FactorSettings::default() };
+        rows_by("local-lines", problem, &settings)
     };
     let runs = (0..RUNS).map(estimate).collect::<Result<Vec<_>, _>>()?;
     let mut rows = Vec::new();
     for bin in by_area(problem, MOST) {
-        if watch("").is_break() {
+        if task.is_stopped() {
             return Ok(None);
         }
         // Mean, variance, and mean of the squared radiosities that lines meet.
@@ -134,7 +118,7 @@ fn gathering(
         };
         let of_elements: Vec<[f64; 3]> = bin.elements.par_iter().map(of_element).collect();
         let mean = |k: usize| of_elements.iter().map(|values| values[k]).sum::<f64>() / of_elements.len() as f64;
-        rows.push(values(spec, point, &bin, mean(1), mean(2), mean(0)));
+        rows.push(values(task, &bin, mean(1), mean(2), mean(0)));
     }
     Ok(Some(rows))
 }

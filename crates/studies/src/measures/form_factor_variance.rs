@@ -5,13 +5,11 @@
 //! with `n_i` the lines that element i has: as many as asked for with local lines; `N A_i / (2 pi R²)` with global ones.
 //! Rows are averaged over elements of like area. Each row has a place of its own: the mean area of its elements.
 
+use super::Measure;
 use super::bins::by_area;
-use super::{Measure, row, rows_by};
 use crate::Error;
-use crate::bench::{Bench, Watch};
 use crate::results::Row as ResultRow;
-use crate::run::Point;
-use crate::spec::Spec;
+use crate::task::{Task, rows_by};
 use isolux_core::Problem;
 use isolux_core::form_factors::{Row, Settings, Way};
 use rayon::prelude::*;
@@ -26,22 +24,19 @@ impl Measure for FormFactorVariance {
         &["area", "variance", "expected"]
     }
 
-    fn measure(
-        &mut self,
-        bench: &mut Bench,
-        spec: &Spec,
-        point: &Point,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<ResultRow>>, Error> {
-        let (scene, series) = (&spec.scenes[point.scene], &spec.series[point.series]);
-        let problem = bench.problem(scene, scene.elements)?;
-        let name = series.axis("factors").unwrap_or("local-lines");
+    fn has_own_places(&self) -> bool {
+        true
+    }
+
+    fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<ResultRow>>, Error> {
+        let (problem, point) = (task.problem()?, task.point);
+        let name = task.series().axis("factors").unwrap_or_default();
         let estimate = |seed| rows_by(name, &problem, &Settings { rays: point.at as u32, seed, ..Settings::default() });
         let pair = [estimate(2 * point.seed)?, estimate(2 * point.seed + 1)?];
         let mean_area = problem.mesh.total_area() / problem.mesh.len() as f64;
         let mut rows = Vec::new();
         for bin in by_area(&problem, MOST) {
-            if watch("").is_break() {
+            if task.is_stopped() {
                 return Ok(None);
             }
             let of_element = |&e: &u32| {
@@ -52,7 +47,7 @@ impl Measure for FormFactorVariance {
             };
             let of_elements: Vec<[f64; 2]> = bin.elements.par_iter().map(of_element).collect();
             let mean = |k: usize| of_elements.iter().map(|both| both[k]).sum::<f64>() / of_elements.len() as f64;
-            rows.push(row(spec, point, bin.area, vec![bin.area, mean(0), mean(1)]));
+            rows.push(task.row(bin.area, vec![bin.area, mean(0), mean(1)]));
         }
         Ok(Some(rows))
     }

@@ -9,29 +9,24 @@ mod ray_count;
 mod warm_up;
 
 use crate::Error;
-use crate::bench::{Bench, Watch};
 use crate::results::Row;
-use crate::run::Point;
-use crate::spec::Spec;
-use isolux_core::Problem;
-use isolux_core::form_factors::{self, WAYS, Way};
+use crate::task::Task;
 
 /// How a study turns a point into rows of its table.
 pub trait Measure {
     /// The columns of the table.
     fn columns(&self) -> &'static [&'static str];
 
-    /// Measures one point; `None` if `watch` breaks off. The same spec and point give the same rows, but for seconds.
+    /// Whether its rows have places of their own, which are not where the point is.
+    fn has_own_places(&self) -> bool {
+        false
+    }
+
+    /// Measures one point; `None` if somebody has stopped it. The same spec and point give the same rows, but for seconds.
     ///
     /// # Errors
     /// If what the spec asks for cannot be solved.
-    fn measure(
-        &mut self,
-        bench: &mut Bench,
-        spec: &Spec,
-        point: &Point,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<Row>>, Error>;
+    fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<Row>>, Error>;
 }
 
 /// Makes a measure.
@@ -56,19 +51,4 @@ pub fn named(name: &str) -> Result<Box<dyn Measure>, Error> {
     found
         .map(|(_, make)| make())
         .ok_or_else(|| isolux_core::Error::unknown_name("measure", name, MEASURES.iter().map(|(name, _)| *name)).into())
-}
-
-/// A row of `point`.
-fn row(spec: &Spec, point: &Point, at: f64, values: Vec<f64>) -> Row {
-    let (scene, series) = (spec.scenes[point.scene].name.clone(), spec.series[point.series].name.clone());
-    Row { scene, series, at, seed: point.seed, values }
-}
-
-/// The way to form factors called `name`, for a few rows: a whole matrix might be too large.
-fn rows_by(name: &str, problem: &Problem, settings: &form_factors::Settings) -> Result<Box<dyn Way>, Error> {
-    let found = WAYS.iter().find(|way| way.name == name);
-    let way = found.ok_or_else(|| {
-        isolux_core::Error::unknown_name("way to form factors", name, WAYS.iter().map(|way| way.name))
-    })?;
-    Ok((way.make)(problem, settings)?)
 }

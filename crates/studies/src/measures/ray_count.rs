@@ -6,12 +6,10 @@
 //! percentile and its maximum over the elements; `kept`, the share of elements for which it is at most one; and `error`, the
 //! area-weighted RMS error of the whole solution.
 
-use super::{Measure, row};
+use super::Measure;
 use crate::Error;
-use crate::bench::{Bench, Watch, single, solve};
 use crate::results::Row;
-use crate::run::Point;
-use crate::spec::Spec;
+use crate::task::Task;
 use isolux_core::solvers::budget;
 use isolux_core::solvers::monte_carlo::{MonteCarlo, Settings};
 
@@ -27,25 +25,16 @@ impl Measure for RayCount {
         &["rays", "median", "ninety", "worst", "kept", "error"]
     }
 
-    fn measure(
-        &mut self,
-        bench: &mut Bench,
-        spec: &Spec,
-        point: &Point,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<Row>>, Error> {
-        let (scene, series) = (&spec.scenes[point.scene], &spec.series[point.series]);
-        let problem = bench.problem(scene, scene.elements)?;
-        let left_out = if series.axis("worst-tenth") == Some("left-out") { 0.1 } else { 0.0 };
-        let rays = (point.at * budget::heuristic(&problem.mesh, left_out)).ceil();
+    fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<Row>>, Error> {
+        let problem = task.problem()?;
+        let left_out = if task.series().says("worst-tenth", "left-out")? { 0.1 } else { 0.0 };
+        let rays = (task.point.at * budget::heuristic(&problem.mesh, left_out)).ceil();
         if rays * f64::from(RUNS) > MOST_RAYS {
             return Ok(Some(Vec::new()));
         }
-        let settings = single(series.method()?, rays as u64 * u64::from(RUNS), point.seed);
-        let settings = Settings { replicates: RUNS, ..settings };
-        let Some(solution) = solve(&mut MonteCarlo::new(&problem, settings)?, &problem, "", watch) else {
-            return Ok(None);
-        };
+        let settings = Settings { replicates: RUNS, ..task.single(rays as u64 * u64::from(RUNS))? };
+        let mut solver = MonteCarlo::new(&problem, settings)?;
+        let Some(solution) = task.solve(&mut solver, &problem) else { return Ok(None) };
         let mesh = &problem.mesh;
         let weighted = |e| f64::from(mesh.area(e)) * solution.radiosity(&problem, e).luminance_f64();
         let mean = mesh.elements().map(weighted).sum::<f64>() / mesh.total_area();
@@ -56,6 +45,6 @@ impl Measure for RayCount {
         let rank = |share: f64| ratios[((ratios.len() - 1) as f64 * share) as usize];
         let kept = ratios.iter().filter(|&&ratio| ratio <= 1.0).count() as f64 / ratios.len() as f64;
         let error = solution.rms_error(&problem) * one;
-        Ok(Some(vec![row(spec, point, point.at, vec![rays, rank(0.5), rank(0.9), rank(1.0), kept, error])]))
+        Ok(Some(vec![task.row(task.point.at, vec![rays, rank(0.5), rank(0.9), rank(1.0), kept, error])]))
     }
 }

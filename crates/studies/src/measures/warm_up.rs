@@ -4,12 +4,11 @@
 //! rounded up, after the last step before the next place. `missing` is how much of the reflected power is not there yet, relative to all of it (its
 //! absolute value, for noise adds some).
 
-use super::{Measure, row};
+use super::Measure;
 use crate::Error;
-use crate::bench::{Bench, Drive, Watch, single};
+use crate::bench::Drive;
 use crate::results::Row;
-use crate::run::Point;
-use crate::spec::Spec;
+use crate::task::Task;
 use isolux_core::solvers::{MonteCarlo, Solver};
 use isolux_core::{Problem, Solution};
 
@@ -23,21 +22,19 @@ impl Measure for WarmUp {
         &["samples", "missing", "error"]
     }
 
-    fn measure(
-        &mut self,
-        bench: &mut Bench,
-        spec: &Spec,
-        point: &Point,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<Row>>, Error> {
-        let (scene, method) = (&spec.scenes[point.scene], spec.series[point.series].method()?);
-        let Some(reference) = bench.reference(spec, scene, method.walk, watch)? else { return Ok(None) };
-        let problem = bench.problem(scene, scene.elements)?;
-        let mut solver = MonteCarlo::new(&problem, single(method, point.at as u64, point.seed))?;
+    fn has_own_places(&self) -> bool {
+        true
+    }
+
+    fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<Row>>, Error> {
+        let settings = task.single(task.point.at as u64)?;
+        let Some(reference) = task.reference(settings.method.walk)? else { return Ok(None) };
+        let problem = task.problem()?;
+        let mut solver = MonteCarlo::new(&problem, settings)?;
         let exact = reflected(&problem, |e| reference.on(e));
         let (mut rows, mut drive) = (Vec::new(), Drive::new());
         while drive.go_on(&mut solver, &problem) {
-            if watch("").is_break() {
+            if task.is_stopped() {
                 return Ok(None);
             }
             if drive.is_between_steps() {
@@ -45,9 +42,9 @@ impl Measure for WarmUp {
                 let missing = (reflected(&problem, |e| lux(&solution, e)) / exact - 1.0).abs();
                 let error = reference.error(&problem, &solution);
                 let samples = solution.work.rays as f64;
-                let place = (samples / point.at * LOOKS - 0.01).ceil();
+                let place = (samples / task.point.at * LOOKS - 0.01).ceil();
                 rows.pop_if(|row: &mut Row| row.at == place);
-                rows.push(row(spec, point, place, vec![samples, missing, error]));
+                rows.push(task.row(place, vec![samples, missing, error]));
             }
         }
         Ok(Some(rows))

@@ -3,6 +3,7 @@
 use crate::ROUNDS;
 use crate::rays::RAYS;
 use anyhow::{Context, Result};
+use isolux_studies::machine::processor;
 use std::env;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -111,11 +112,4 @@ fn middle(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted[sorted.len() / 2]
-}
-
-/// What the machine calls its processor.
-fn processor() -> String {
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-    name.map_or_else(|| env::consts::ARCH.to_owned(), |(_, name)| name.to_owned())
 }

@@ -18,9 +18,9 @@ use isolux_core::run::run;
 use isolux_core::sampling::{OwenSobol, Sequence, SequenceName};
 use isolux_core::scene::Scene;
 use isolux_core::scene::builtin::builtin;
-use isolux_core::solvers::direct_light::{DirectLight as Rounds, Settings};
+use isolux_core::solvers::direct_light::{DirectLight, Settings};
 use isolux_core::solvers::monte_carlo::{self, Budget, MonteCarlo};
-use isolux_core::transport::direct_light::{DirectLight, Rays};
+use isolux_core::transport::direct_light::{DirectEstimator, Rays};
 use isolux_core::transport::{Departure, Footprint, LightSampler};
 use isolux_testing::reference::scenes_folder;
 use std::ops::ControlFlow;
@@ -115,7 +115,7 @@ fn errors(problem: &Problem, found: &[Rgb], reference: &[Rgb]) -> [f64; 3] {
 
 fn fixed(problem: &Problem, rays: Rays, seed: u64) -> (Vec<Rgb>, u64) {
     let (sampler, sequence) = (LightSampler::new(problem), OwenSobol::new(seed));
-    let mut light = DirectLight::new(problem, &sampler, &sequence);
+    let mut light = DirectEstimator::new(problem, &sampler, &sequence);
     let mut traced = 0;
     let mut of_element = |e| {
         let (irradiance, rays) = light.irradiance(e, rays);
@@ -127,7 +127,7 @@ fn fixed(problem: &Problem, rays: Rays, seed: u64) -> (Vec<Rgb>, u64) {
 
 fn adaptive(problem: &Problem, rays: u32, seed: u64) -> Result<(Vec<Rgb>, u64)> {
     let sequence: SequenceName = "owen-sobol".parse()?;
-    let mut light = Rounds::new(problem, Settings { rays: rays / ROUNDS, seed, sequence })?;
+    let mut light = DirectLight::new(problem, Settings { rays: rays / ROUNDS, seed, sequence })?;
     while light.rounds() < ROUNDS {
         for piece in 0..light.pieces() {
             let received = light.piece(problem, piece);

@@ -8,7 +8,7 @@ use crate::math::Rgb;
 use crate::sampling::Sequence;
 use crate::solvers::monte_carlo::axes::Lines;
 use crate::solvers::{Landing, Part};
-use crate::transport::bundle::Bundle;
+use crate::transport::bundle::{self, Bundle};
 use crate::transport::global_line;
 use crate::transport::{End, Span, Spot};
 use std::f64::consts::TAU;
@@ -39,16 +39,17 @@ enum Kind {
 impl LineSet {
     /// Lines with about `samples` crossings of elements.
     pub fn new(problem: &Problem, lines: Lines, samples: u64) -> LineSet {
-        let (radius, area) = (f64::from(problem.geometry.bounding_sphere().1), problem.mesh.total_area());
+        let area = problem.mesh.total_area();
         let (kind, crossings_per_area) = if lines == Lines::Bundle {
             let least = SAMPLES_OF_BUNDLE[0].max(2 * problem.scene.triangles.len() as u64);
             let of_bundle = least.min(SAMPLES_OF_BUNDLE[1]).min(samples.max(1));
-            // A bundle over the square of side 2 R crosses areas A / (2 a) times, with a = (2 R / cells)².
-            let cells = (8.0 * radius.powi(2) * of_bundle as f64 / area).sqrt().ceil().clamp(1.0, 8192.0);
-            let crossings = (cells / (2.0 * radius)).powi(2) / 2.0;
+            let of_one_cell = area * bundle::crossings_per_area(problem, 1);
+            let cells = (of_bundle as f64 / of_one_cell).sqrt().ceil().clamp(1.0, 8192.0) as u32;
+            let crossings = bundle::crossings_per_area(problem, cells);
             let count = (samples as f64 / (crossings * area)).ceil();
-            (Kind::Bundles { count: count as u64, cells: cells as u32 }, crossings * count)
+            (Kind::Bundles { count: count as u64, cells }, crossings * count)
         } else {
+            let radius = f64::from(problem.geometry.bounding_sphere().1);
             let lines = (samples as f64 * TAU * radius.powi(2) / area).ceil() as u64;
             (Kind::Single(lines), global_line::expected_crossings(lines, 1.0, radius as f32))
         };
