@@ -293,7 +293,7 @@ fn rounds(problem: &Problem, seed: u64, rounds: u32) -> DirectLight {
     while light.rounds() < rounds {
         for piece in 0..light.pieces() {
             let received = light.piece(problem, piece);
-            light.absorb(problem, piece, &received);
+            light.absorb(problem, piece, &received, |_, irradiance, _| irradiance);
         }
     }
     light
@@ -337,7 +337,7 @@ fn pieces_are_pure_and_resumed_rounds_go_on() {
     for run in [&mut light, &mut resumed] {
         for piece in 0..run.pieces() {
             let received = run.piece(&problem, piece);
-            run.absorb(&problem, piece, &received);
+            run.absorb(&problem, piece, &received, |_, irradiance, _| irradiance);
         }
     }
     assert!(problem.mesh.elements().all(|e| light.estimate(e) == resumed.estimate(e)));

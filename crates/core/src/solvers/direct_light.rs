@@ -1,172 +1,237 @@
-//! Direct light of all elements: rounds of independent estimates, their mean and its error.
+//! Direct light of all elements in independent rounds, and what is learned from them about where rays are best spent.
 //!
-//! Each round every element sends rays (see [`crate::transport::direct_light`]) from streams scrambled anew. Which share of them are
-//! cosine rays follows from the round before: of a few shares the one with the least variance,
+//! Each round elements send rays (see [`crate::transport::direct_light`]) from streams scrambled anew. A single element sends too few to
+//! know how good they are, so neighbours put together what theirs tell: 64 elements that follow each other in the mesh.
 //!
-//! ```text
-//! ∫ f² (d_c³ + d_l³) / (d_c² + d_l²)²  -  (∫ f w)² / n_c  -  (∫ f (1 - w))² / n_l,      w = d_c² / (d_c² + d_l²),  f = Be cos / pi
-//! ```
+//! - Which share of the rays are cosine rays: of a few shares the one with the least variance v of a ray,
 //!
-//! as its rays tell. So an element that touches a window sends cosine rays, and one lit by small lamps light rays. How many rays an
-//! element sends grows with the square root of its area times the mean variance of a ray in the rounds before: that is least for the
-//! area-weighted mean square error (Neyman 1934). A quarter of the rays goes to all alike, for what has not been seen yet.
+//!   ```text
+//!   ∫ f² (d_c³ + d_l³) / (d_c² + d_l²)²  -  (∫ f w)² / n_c  -  (∫ f (1 - w))² / n_l,      w = d_c² / (d_c² + d_l²),  f = Be cos / pi
+//!   ```
 //!
-//! The first round is a trial and counts for nothing. Unbiased: given the earlier rounds each round is, and all others count the
-//! same. Rounds are uncorrelated, so their spread is the error. Cost: one ray a sample; 25 bytes an element.
+//!   So elements that touch a window send cosine rays, and those lit by small lamps light rays.
+//! - The weight against light that was shot with Φ lumens a ray, whose variance is `V_s = E Φ / A`: `V_s / (V_s + v / n)`.
+//! - How many rays an element sends: with `n = (k sqrt(a v) - v / V_s)+` the sum of `a V` over all elements is least (Neyman 1934),
+//!   where V is the merged variance. With a = A that would be the area-weighted mean square error, with a = 1 the plain one;
+//!   `a = sqrt(A)` serves both. Where nothing is seen, or shooting does better, no rays are sent.
+//!
+//! A trial before the first round shows something of all neighbours. Unbiased: weights and numbers of rays follow from earlier rounds.
+//! Cost: one ray a sample, which takes twice as long as one of shooting; 1 byte an element.
 
+use crate::Problem;
 use crate::math::Rgb;
 use crate::math::hash::derive;
 use crate::sampling::SequenceName;
 use crate::transport::direct_light::{Rays, Sight};
 use crate::transport::{DirectEstimator, LightSampler};
-use crate::{Error, Problem};
+use std::ops::Range;
 
-/// Shares of cosine rays among which every element chooses.
+/// Shares of cosine rays among which neighbours choose.
 pub const COSINE_SHARES: [f32; 4] = [0.0625, 0.25, 0.5, 0.875];
-/// The share of the first round.
+/// The share of the trial.
 const FIRST_SHARE: u8 = 1;
+/// Elements that learn from each other.
+const NEIGHBOURS: usize = 64;
+/// Rays of the mean of all elements that count as the neighbours' own, as long as these have sent few.
+const RAYS_OF_PRIOR: f32 = 4.0;
+/// One of so many elements takes part in the trial.
+const TRIAL_OF: usize = 4;
 /// Rays of one piece, about.
-const RAYS_PER_PIECE: u32 = 1 << 14;
-/// Share of the rays that goes to all elements alike.
-const ALIKE: f64 = 0.25;
+const RAYS_PER_PIECE: usize = 1 << 14;
 /// Most rays of an element, as a multiple of the mean.
 const MOST: f64 = 256.0;
-/// Fewest rays of an element in a round: one of each kind at least, and something to choose a share by.
-const FEWEST_RAYS: u32 = 4;
-
-/// How direct light is computed.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Settings {
-    /// Rays of each element in a round, on average.
-    pub rays: u32,
-    pub seed: u64,
-    pub sequence: SequenceName,
-}
+/// Fewest rays of an element that sends any: one of each kind.
+const FEWEST_RAYS: u32 = 2;
+/// Who wants fewer sends none.
+const LEAST_WANTED: f64 = 1.0;
+/// Rays of an element in the trial.
+const RAYS_OF_TRIAL: u32 = 4;
+/// Least variance of a ray, relative to the square of the mean: few rays cannot tell that there is less.
+const EVEN: f32 = 0.01;
 
 /// What one round gave an element.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Received {
     /// Irradiance [lux].
     pub irradiance: Rgb,
-    /// Number in [`COSINE_SHARES`] of the share that would have been best.
-    pub share: u8,
-    /// Variance of a ray with that share [lux²].
-    pub variance: f32,
+    /// Variance of a ray with each of the [`COSINE_SHARES`] [lux²].
+    pub variances: [f32; 4],
     pub rays: u32,
 }
 
-/// Running mean of the direct irradiance of every element.
+/// What neighbours have learned: sums over their rays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Learned {
+    rays: f32,
+    irradiance: f32,
+    variances: [f32; 4],
+    /// Number in [`COSINE_SHARES`] of their share of cosine rays.
+    share: u8,
+}
+
+impl Learned {
+    /// Adds what `weight` times the rays of others have told.
+    fn add(&mut self, other: &Learned, weight: f32) {
+        self.rays += weight * other.rays;
+        self.irradiance += weight * other.irradiance;
+        self.variances.iter_mut().zip(other.variances).for_each(|(sum, variance)| *sum += weight * variance);
+    }
+}
+
+/// Rounds of direct light.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct DirectLight {
-    settings: Settings,
+    seed: u64,
+    sequence: SequenceName,
     sampler: LightSampler,
-    /// Number in [`COSINE_SHARES`] of the share of each element's cosine rays.
-    shares: Vec<u8>,
-    /// Mean over all rounds of the variance of a ray [lux²]: the need of rays.
-    variance: Vec<f32>,
-    /// Rays for each unit of `sqrt(area * variance)`.
-    rays_for_need: f64,
-    mean: Vec<Rgb>,
-    /// Of the luminance.
-    sum_sq_dev: Vec<f32>,
-    /// Whether the trial is over, and the finished rounds after it.
-    tried: bool,
+    learned: Vec<Learned>,
+    /// What the running round teaches, with what was learned before.
+    fresh: Vec<Learned>,
+    elements: usize,
+    /// Rounds begun; the trial is the first.
     rounds: u32,
-    /// Rays of all rounds and of the trial.
-    rays: u64,
+    /// Rays of an element in the running round, on average.
+    rays: f64,
+    /// Rays for each unit of need.
+    rays_for_need: f64,
+    /// Flux [lm] of the rays that have shot the light with which the round is merged.
+    ray_flux: f64,
 }
 
 impl DirectLight {
-    /// # Errors
-    /// [`Error::Parameter`] for fewer than four rays.
-    pub fn new(problem: &Problem, settings: Settings) -> Result<DirectLight, Error> {
-        if settings.rays < FEWEST_RAYS {
-            let allowed = "each element needs at least four rays in a round";
-            return Err(Error::Parameter { name: "rays", value: settings.rays.to_string(), allowed });
-        }
+    /// Nothing learned yet.
+    pub fn new(problem: &Problem, seed: u64, sequence: SequenceName) -> DirectLight {
         let elements = problem.mesh.len();
-        Ok(DirectLight {
-            settings,
+        let learned = Learned { share: FIRST_SHARE, ..Learned::default() };
+        DirectLight {
+            seed,
+            sequence,
             sampler: LightSampler::new(problem),
-            shares: vec![FIRST_SHARE; elements],
-            variance: vec![0.0; elements],
-            rays_for_need: 0.0,
-            mean: vec![Rgb::BLACK; elements],
-            sum_sq_dev: vec![0.0; elements],
-            tried: false,
+            learned: vec![learned; elements.div_ceil(NEIGHBOURS)],
+            fresh: vec![learned; elements.div_ceil(NEIGHBOURS)],
+            elements,
             rounds: 0,
-            rays: 0,
-        })
+            rays: 0.0,
+            rays_for_need: 0.0,
+            ray_flux: f64::INFINITY,
+        }
+    }
+
+    /// Begins the trial.
+    pub fn begin_trial(&mut self) {
+        (self.rounds, self.rays) = (0, f64::from(RAYS_OF_TRIAL) / TRIAL_OF as f64);
+    }
+
+    /// Begins a round of about `rays` rays in all, to be merged with light that was shot with so much flux [lm] a ray (infinite if there
+    /// is none).
+    pub fn begin_round(&mut self, problem: &Problem, rays: f64, ray_flux: f64) {
+        self.rounds += 1;
+        self.learn_from_round();
+        (self.rays, self.ray_flux) = (rays / self.elements as f64, ray_flux);
+        self.rays_for_need = self.rays_for_need(problem, problem.mesh.elements(), rays, ray_flux);
+    }
+
+    /// What the sum of `sqrt(A) V` over `elements` would be if they had `rays` rays together, merged with rays of so much flux [lm].
+    pub fn expected_variance(
+        &self,
+        problem: &Problem,
+        elements: impl Iterator<Item = u32> + Clone,
+        rays: f64,
+        ray_flux: f64,
+    ) -> f64 {
+        let each = self.rays_for_need(problem, elements.clone(), rays, ray_flux);
+        let of_element = |e| {
+            let (own, worth) = (self.wanted(problem, e, each, ray_flux), self.worth_of_shooting(problem, e, ray_flux));
+            let own = if own < LEAST_WANTED { 0.0 } else { own };
+            let variance = self.expected(e).1;
+            if variance > 0.0 { f64::from(problem.mesh.area(e)).sqrt() * variance / (own + worth) } else { 0.0 }
+        };
+        elements.map(of_element).sum()
+    }
+
+    /// The k with which `elements` want `rays` rays together.
+    fn rays_for_need(
+        &self,
+        problem: &Problem,
+        elements: impl Iterator<Item = u32> + Clone,
+        rays: f64,
+        ray_flux: f64,
+    ) -> f64 {
+        let all = |each: f64| elements.clone().map(|e| self.wanted(problem, e, each, ray_flux)).sum::<f64>();
+        let (mut low, mut high) = (0.0, 1.0);
+        while all(high) < rays && high < 1e30 {
+            (low, high) = (high, 4.0 * high);
+        }
+        for _ in 0..10 {
+            let middle = 0.5 * (low + high);
+            if all(middle) > rays { high = middle } else { low = middle }
+        }
+        high
+    }
+
+    /// What the round taught holds from now on. Where few rays were sent the mean over all elements stands in.
+    fn learn_from_round(&mut self) {
+        let mut all = Learned::default();
+        self.fresh.iter().for_each(|fresh| all.add(fresh, 1.0));
+        let few = if all.rays > 0.0 { RAYS_OF_PRIOR / all.rays } else { 0.0 };
+        for (learned, fresh) in self.learned.iter_mut().zip(&self.fresh) {
+            *learned = *fresh;
+            learned.add(&all, few);
+            let best = (0..).zip(learned.variances).min_by(|a, b| a.1.total_cmp(&b.1));
+            learned.share = best.map_or(FIRST_SHARE, |(share, _)| share);
+        }
     }
 
     /// Pieces of a round: ranges of neighbouring elements.
     pub fn pieces(&self) -> u64 {
-        self.mean.len().div_ceil(self.elements_per_piece()) as u64
+        self.elements.div_ceil(self.elements_per_piece()) as u64
     }
 
     /// What the elements of `piece` receive in the running round, in their order. Pure.
     pub fn piece(&self, problem: &Problem, piece: u64) -> Vec<Received> {
-        let seed = derive(self.settings.seed, self.rounds_begun());
-        let sequence = (self.settings.sequence.entry().make)(seed);
+        let sequence = (self.sequence.entry().make)(derive(self.seed, self.rounds.into()));
         let mut light = DirectEstimator::new(problem, &self.sampler, sequence.as_ref());
         self.range(piece).map(|e| self.element(problem, &mut light, e as u32)).collect()
     }
 
-    /// Takes in the elements of `piece`; after the last piece the round is complete. Pieces come in their order.
-    pub fn absorb(&mut self, problem: &Problem, piece: u64, received: &[Received]) {
-        let (share, begun) = (1.0 / (self.rounds + 1) as f32, 1.0 / (self.rounds_begun() + 1) as f32);
-        for (e, received) in self.range(piece).zip(received) {
-            if self.tried {
-                let delta = received.irradiance - self.mean[e];
-                self.mean[e] += delta * share;
-                self.sum_sq_dev[e] += delta.luminance() * (received.irradiance - self.mean[e]).luminance();
+    /// Hands element, irradiance [lux] and weight of what was `received` in `piece` to `merge`, but not in the trial.
+    pub fn merge(&self, problem: &Problem, piece: u64, received: &[Received], mut merge: impl FnMut(u32, Rgb, f32)) {
+        if self.rounds > 0 {
+            for (e, received) in self.range(piece).zip(received).filter(|(_, received)| received.rays > 0) {
+                merge(e as u32, received.irradiance, self.weight(problem, e as u32, received.rays));
             }
-            self.shares[e] = received.share;
-            self.variance[e] += (received.variance - self.variance[e]) * begun;
-            self.rays += u64::from(received.rays);
-        }
-        if piece + 1 >= self.pieces() {
-            self.rounds += u32::from(self.tried);
-            self.tried = true;
-            let need: f64 = problem.mesh.elements().map(|e| self.need(problem, e)).sum();
-            let shared = (1.0 - ALIKE) * f64::from(self.settings.rays) * self.mean.len() as f64;
-            self.rays_for_need = if need > 0.0 { shared / need } else { 0.0 };
         }
     }
 
-    /// Mean direct irradiance [lux] of element `e`, and the variance of the luminance of that mean [lux²]; NaN before the second
-    /// round after the trial.
-    pub fn estimate(&self, e: u32) -> (Rgb, f32) {
-        let rounds = self.rounds as f32;
-        let variance = if self.rounds < 2 { f32::NAN } else { self.sum_sq_dev[e as usize] / (rounds * (rounds - 1.0)) };
-        (self.mean[e as usize], variance)
+    /// Learns from what was `received` in `piece`, for the next round.
+    pub fn learn(&mut self, piece: u64, received: &[Received]) {
+        for (e, received) in self.range(piece).zip(received) {
+            let (learned, rays) = (&mut self.fresh[e / NEIGHBOURS], received.rays as f32);
+            learned.rays += rays;
+            learned.irradiance += rays * received.irradiance.luminance();
+            learned.variances.iter_mut().zip(received.variances).for_each(|(sum, variance)| *sum += rays * variance);
+        }
     }
 
     /// Rays of element `e` in the running round.
     pub fn rays_of(&self, problem: &Problem, e: u32) -> u32 {
-        let mean = f64::from(self.settings.rays);
-        let alike = if self.tried { ALIKE } else { 1.0 };
-        let rays = alike * mean + self.need(problem, e) * self.rays_for_need;
-        (rays.min(MOST * mean) as u32).max(FEWEST_RAYS)
+        if self.rounds == 0 {
+            return if (e as usize).is_multiple_of(TRIAL_OF) { RAYS_OF_TRIAL } else { 0 };
+        }
+        let wanted = self.wanted(problem, e, self.rays_for_need, self.ray_flux).min(MOST * self.rays.max(1.0));
+        if wanted < LEAST_WANTED { 0 } else { (wanted as u32).max(FEWEST_RAYS) }
     }
 
     /// The share of cosine rays of element `e` in the running round.
     pub fn cosine_share(&self, e: u32) -> f32 {
-        COSINE_SHARES[usize::from(self.shares[e as usize])]
-    }
-
-    /// Finished rounds, without the trial.
-    pub fn rounds(&self) -> u32 {
-        self.rounds
-    }
-
-    /// Rays traced so far, with those of the trial.
-    pub fn rays(&self) -> u64 {
-        self.rays
+        COSINE_SHARES[usize::from(self.learned[e as usize / NEIGHBOURS].share)]
     }
 
     fn element(&self, problem: &Problem, light: &mut DirectEstimator, e: u32) -> Received {
         let count = self.rays_of(problem, e);
+        if count == 0 {
+            return Received::default();
+        }
         let rays = split(count, self.cosine_share(e));
         let mut sum = Rgb::BLACK;
         let mut trials = COSINE_SHARES.map(|share| Trial::new(split(count, share)));
@@ -176,30 +241,49 @@ impl DirectLight {
             trials.iter_mut().for_each(|trial| trial.add(&sight, irradiance.luminance()));
         });
         let shadow = light.lamps(e, count, |_, irradiance| sum += irradiance);
-        let variances = (0..).zip(trials.iter().map(Trial::variance));
-        let best = variances.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| !sum.is_black());
-        let (share, variance) = best.unwrap_or((self.shares[e as usize], 0.0));
-        Received { irradiance: sum, share, variance: variance * count as f32, rays: (traced + shadow) as u32 }
+        let variances = trials.map(|trial| trial.variance() * count as f32);
+        Received { irradiance: sum, variances, rays: (traced + shadow) as u32 }
     }
 
-    /// What the rays of element `e` are in proportion to.
-    fn need(&self, problem: &Problem, e: u32) -> f64 {
-        (f64::from(problem.mesh.area(e)) * f64::from(self.variance[e as usize])).sqrt()
+    /// Weight of `rays` rays of element `e` against what was shot.
+    fn weight(&self, problem: &Problem, e: u32, rays: u32) -> f32 {
+        let worth = self.worth_of_shooting(problem, e, self.ray_flux);
+        (f64::from(rays) / (f64::from(rays) + worth)) as f32
     }
 
-    /// Rounds begun, the trial among them.
-    fn rounds_begun(&self) -> u64 {
-        u64::from(self.rounds) + u64::from(self.tried)
+    /// Mean irradiance of the neighbours of element `e` [lux], and variance of a ray [lux²].
+    fn expected(&self, e: u32) -> (f64, f64) {
+        let Learned { rays, irradiance, variances, share } = self.learned[e as usize / NEIGHBOURS];
+        if rays <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let mean = irradiance / rays;
+        (f64::from(mean), f64::from((variances[usize::from(share)] / rays).max(EVEN * mean * mean)))
+    }
+
+    /// `v / V_s`: rays that would tell as much as was shot.
+    fn worth_of_shooting(&self, problem: &Problem, e: u32, ray_flux: f64) -> f64 {
+        let (irradiance, variance) = self.expected(e);
+        if irradiance <= 0.0 || ray_flux.is_infinite() {
+            return 0.0;
+        }
+        variance * f64::from(problem.mesh.area(e)) / (irradiance * ray_flux)
+    }
+
+    /// `(k sqrt(a v) - v / V_s)+`
+    fn wanted(&self, problem: &Problem, e: u32, each: f64, ray_flux: f64) -> f64 {
+        let need = (f64::from(problem.mesh.area(e)).sqrt() * self.expected(e).1).sqrt();
+        (each * need - self.worth_of_shooting(problem, e, ray_flux)).max(0.0)
     }
 
     fn elements_per_piece(&self) -> usize {
-        (RAYS_PER_PIECE / self.settings.rays).max(1) as usize
+        ((RAYS_PER_PIECE as f64 / self.rays.max(1.0)) as usize).max(1)
     }
 
-    fn range(&self, piece: u64) -> std::ops::Range<usize> {
+    fn range(&self, piece: u64) -> Range<usize> {
         let size = self.elements_per_piece();
-        let first = (piece as usize).saturating_mul(size).min(self.mean.len());
-        first..first.saturating_add(size).min(self.mean.len())
+        let first = (piece as usize).saturating_mul(size).min(self.elements);
+        first..first.saturating_add(size).min(self.elements)
     }
 }
 
@@ -213,15 +297,16 @@ fn split(rays: u32, cosine_share: f32) -> Rays {
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     rays: Rays,
-    /// The three integrals of the variance.
+    /// The first integral of the variance.
     square: f32,
-    by_cosine: f32,
-    by_light: f32,
+    /// The other two, by the parts that both kinds of rays add to the mean: their sums and sums of squares.
+    by_cosine: [f32; 2],
+    by_light: [f32; 2],
 }
 
 impl Trial {
     fn new(rays: Rays) -> Trial {
-        Trial { rays, square: 0.0, by_cosine: 0.0, by_light: 0.0 }
+        Trial { rays, square: 0.0, by_cosine: [0.0; 2], by_light: [0.0; 2] }
     }
 
     /// Adds a ray that has added `irradiance` [lux].
@@ -230,12 +315,19 @@ impl Trial {
         let [cosine, light] = [self.rays.cosine as f32 * sight.cosine, self.rays.light as f32 * sight.light];
         let sum = cosine * cosine + light * light;
         self.square += irradiance * value * (cosine.powi(3) + light.powi(3)) / (sum * sum);
-        self.by_cosine += irradiance * cosine * cosine / sum;
-        self.by_light += irradiance * light * light / sum;
+        for ([first, second], d) in [(&mut self.by_cosine, cosine), (&mut self.by_light, light)] {
+            let part = irradiance * d * d / sum;
+            *first += part;
+            *second += part * part;
+        }
     }
 
+    /// Unbiased, so it may be negative: products of two different rays stand for the squares of means.
     fn variance(&self) -> f32 {
-        let squared = self.by_cosine.powi(2) / self.rays.cosine as f32 + self.by_light.powi(2) / self.rays.light as f32;
-        (self.square - squared).max(0.0)
+        let rays = (self.rays.cosine + self.rays.light) as f32;
+        let squared = |[sum, sum_sq]: [f32; 2]| (sum * sum - sum_sq) * rays / (rays - 1.0);
+        self.square
+            - squared(self.by_cosine) / self.rays.cosine as f32
+            - squared(self.by_light) / self.rays.light as f32
     }
 }

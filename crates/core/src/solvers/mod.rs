@@ -13,6 +13,8 @@ pub use direct_light::DirectLight;
 pub use monte_carlo::MonteCarlo;
 
 use crate::form_factors::Row;
+use crate::solvers::direct_light::Received;
+use crate::transport::bundle_gather::Sums;
 use crate::transport::{Span, Spot};
 use crate::{Problem, Solution};
 use std::ops::Range;
@@ -58,6 +60,10 @@ pub struct Part {
     pub rays: u64,
     /// Rows of a matrix, for solvers that need one: form factors, or links of a hierarchy.
     pub rows: Vec<Row>,
+    /// What neighbouring elements received straight from the lights, for solvers whose elements look for these.
+    pub received: Vec<Received>,
+    /// What the crossings of bundles have seen.
+    pub sums: Option<Sums>,
 }
 
 /// Light that arrived on an element.

@@ -35,7 +35,7 @@ const CELLS: [f64; 2] = [256.0, 1024.0];
 
 /// What crossings see: red, green and blue of the radiosity [lm/m²] of each element, and 1 to count them; last what lies at ends
 /// without element.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Source(Vec<[f32; 4]>);
 
 impl Source {
@@ -48,7 +48,7 @@ impl Source {
 }
 
 /// What the crossings of each element have seen, 32 bytes an element: sums of radiosities [lm/m²], and their number.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sums(Vec<[f64; 4]>);
 
 impl Sums {
@@ -62,10 +62,10 @@ impl Sums {
         self.0.fill([0.0; 4]);
     }
 
-    /// Adds other sums of the same problem, each crossing of which counts `weight` times.
-    pub fn add(&mut self, other: &Sums, weight: f64) {
+    /// Adds other sums of the same problem.
+    pub fn add(&mut self, other: &Sums) {
         for (sum, other) in self.0.iter_mut().zip(&other.0) {
-            sum.iter_mut().zip(other).for_each(|(sum, other)| *sum += weight * other);
+            sum.iter_mut().zip(other).for_each(|(sum, other)| *sum += other);
         }
     }
 
@@ -134,7 +134,7 @@ pub fn gather_all(
             })
         };
         of_pieces.par_iter_mut().zip(at_once).try_for_each(gather_piece)?;
-        of_pieces.iter().zip(at_once).for_each(|(sums, _)| total.add(sums, 1.0));
+        of_pieces.iter().zip(at_once).for_each(|(sums, _)| total.add(sums));
     }
     Ok(total)
 }

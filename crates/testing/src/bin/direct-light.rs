@@ -131,7 +131,7 @@ fn adaptive(problem: &Problem, rays: u32, seed: u64) -> Result<(Vec<Rgb>, u64)> 
     while light.rounds() < ROUNDS {
         for piece in 0..light.pieces() {
             let received = light.piece(problem, piece);
-            light.absorb(problem, piece, &received);
+            light.absorb(problem, piece, &received, |_, irradiance, _| irradiance);
         }
     }
     Ok((problem.mesh.elements().map(|e| light.estimate(e).0).collect(), light.rays()))

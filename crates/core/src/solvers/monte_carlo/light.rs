@@ -236,6 +236,29 @@ impl Light {
         self.indirect[k] = shot + gathered;
     }
 
+    /// Merges an estimate of the flux [lm] on element `e` straight from all lights with what they have shot, with this weight; returns
+    /// the flux that is there then.
+    pub fn merge_direct(&mut self, e: u32, estimate: Rgb, weight: f32) -> Rgb {
+        let merged = self.shot_first(e) * (1.0 - weight) + estimate * weight;
+        if let Some(lamp) = self.lamps.get_mut(e as usize) {
+            *lamp = Rgb::BLACK;
+        }
+        self.direct[e as usize] = merged;
+        merged
+    }
+
+    /// Merges an estimate of the indirect flux [lm] on element `e` with what was shot, with this weight.
+    pub fn merge_indirect(&mut self, e: u32, estimate: Rgb, weight: f32) {
+        let indirect = &mut self.indirect[e as usize];
+        *indirect = *indirect * (1.0 - weight) + estimate * weight;
+    }
+
+    /// Merges what has landed in the running step, an estimate of the indirect irradiance [lux] of element `e` of this `area` [m²].
+    pub fn merge_landed(&mut self, e: u32, area: f32, weight: f32) {
+        let landed = to_rgb(&std::mem::take(&mut self.landed[e as usize]));
+        self.merge_indirect(e, landed * area, weight);
+    }
+
     /// Ends a regular iteration: what has landed is another estimate of all reflected light, averaged in with weight `share`.
     pub fn average_in(&mut self, share: f32) {
         self.touched = None;

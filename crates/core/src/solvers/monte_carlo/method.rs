@@ -53,6 +53,15 @@ const PARTICLES: Method = Method { walk: Walk::Continuous, address: Address::Per
 /// All methods with a name. The first is the default.
 pub const METHODS: &[NamedMethod] = &[
     NamedMethod {
+        name: "auto",
+        what: [
+            "shoots a part of the rays, then looks for the lights from each element and",
+            "gathers along fast bundles of lines; small elements along rays of their own",
+        ],
+        source: "isolux",
+        method: of_order(OrderName::AUTO),
+    },
+    NamedMethod {
         name: "stochastic-jacobi",
         what: [
             "shoots light until none is left, shoots the whole once more, and gathers",

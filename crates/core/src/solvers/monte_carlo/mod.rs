@@ -6,6 +6,7 @@
 //! anywhere, a less leaky one if it leaves from where it landed, and the radiosity equation itself for continuous walks. The
 //! error bars do not contain what elements of finite size cost. Cost: one ray a sample.
 
+mod auto;
 pub mod axes;
 mod complete;
 mod experience;

@@ -4,6 +4,7 @@
 //! lines), or, where light is pooled on the elements and shot in stages, a [`Relaxation`](super::relaxation) that follows the
 //! course that the order states.
 
+mod auto;
 mod breadth_first;
 mod depth_first;
 mod regular;
@@ -46,6 +47,7 @@ pub const ORDERS: &[Entry] = &[
     staged::ENTRY,
     wdrs::ENTRY,
     depth_first::ENTRY,
+    auto::ENTRY,
 ];
 
 impl TableEntry for Entry {
@@ -61,6 +63,7 @@ impl TableEntry for Entry {
 pub type OrderName = Choice<Entry>;
 
 impl OrderName {
+    pub const AUTO: OrderName = Choice(&auto::ENTRY);
     pub const STOCHASTIC_JACOBI: OrderName = Choice(&stochastic_jacobi::ENTRY);
     pub const STOCHASTIC_RAY: OrderName = Choice(&stochastic_ray::ENTRY);
     pub const BREADTH_FIRST: OrderName = Choice(&breadth_first::ENTRY);

@@ -4,7 +4,7 @@ use super::draw::Draw;
 use super::{Relaxation, Stage};
 use crate::Problem;
 use crate::solution::Balance;
-use crate::solvers::monte_carlo::light::Origin;
+use crate::solvers::monte_carlo::light::{Light, Origin};
 
 impl Relaxation {
     /// Ends a step of `stage`, as the stage wants it.
@@ -74,6 +74,16 @@ impl Relaxation {
         self.reflected = mesh.elements().map(reflected).sum();
         self.balance.absorbed = mesh.elements().map(landed).sum::<f64>() - self.reflected;
         self.balance.unshot = emitted - self.balance.absorbed - self.balance.escaped - self.balance.back_face;
+    }
+
+    /// The light as it stands.
+    pub fn light(&self) -> &Light {
+        &self.light
+    }
+
+    /// The light, to be improved by others.
+    pub fn light_mut(&mut self) -> &mut Light {
+        &mut self.light
     }
 
     /// Flux [lm] of the rays that carried reflected light, were it spread evenly over them.

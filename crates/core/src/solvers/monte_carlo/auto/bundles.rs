@@ -1,0 +1,110 @@
+//! What elements gather along bundles of global lines ([`bundle_gather`](crate::transport::bundle_gather)), merged with what was shot.
+//!
+//! Memory: 64 bytes an element, and 32 more for each piece in flight, of which there are four at most.
+
+use super::indirect::Precision;
+use crate::Problem;
+use crate::sampling::Sequence;
+use crate::solvers::Part;
+use crate::solvers::monte_carlo::light::Light;
+use crate::solvers::monte_carlo::relaxation::Relaxation;
+use crate::transport::Bundle;
+use crate::transport::bundle::crossings_per_area;
+use crate::transport::bundle_gather::{Source, Sums, gather, grid_cells, samples_of_bundle};
+use std::ops::Range;
+
+/// A crossing costs as much as this share of a ray, and counts as that.
+pub const COST: f64 = 1.0 / 8.0;
+/// Complete solutions that have enough directions together.
+const COMPLETE_SOLUTIONS: f64 = 8.0;
+/// Pieces of all bundles, and pieces in flight: every piece has sums of its own.
+const PIECES: u64 = 16;
+const IN_FLIGHT: u64 = 4;
+
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct Bundles {
+    count: u64,
+    cells: u32,
+    absorbed: u64,
+    source: Source,
+    sums: Sums,
+    precision: Precision,
+}
+
+/// Bundles that cost as much as `rays` rays, and cells along the edges of their grids.
+pub fn bundles_of(problem: &Problem, rays: f64) -> (u64, u32) {
+    let samples = rays / COST;
+    // Others follow, with other directions.
+    let cells = grid_cells(problem, (COMPLETE_SOLUTIONS * samples) as u64);
+    ((samples / samples_of_bundle(problem, cells)).ceil() as u64, cells)
+}
+
+impl Bundles {
+    /// Begins anew: elements reflect the light that was shot, and shall have about as many crossings together as `rays` rays cost.
+    /// `known(bundles, crossings)` is how well so many bundles and crossings [1/m²] will tell it.
+    pub fn begin(
+        &mut self,
+        problem: &Problem,
+        rays: u64,
+        known: impl Fn(f64, f64) -> Precision,
+        light: &Light,
+    ) {
+        (self.count, self.cells) = bundles_of(problem, rays as f64);
+        self.absorbed = 0;
+        let crossings = self.count as f64 * crossings_per_area(problem, self.cells);
+        self.precision = known(self.count as f64, crossings);
+        if self.count > 0 {
+            self.source = Source::new(problem, |e| light.reflected_radiosity(&problem.mesh, e));
+            self.sums = Sums::new(problem);
+        }
+    }
+
+    pub fn pieces(&self) -> Range<u64> {
+        self.absorbed..self.all_pieces().min(self.absorbed + IN_FLIGHT)
+    }
+
+    fn all_pieces(&self) -> u64 {
+        self.count.min(PIECES)
+    }
+
+    /// Gathers along the bundles of `piece`.
+    pub fn part(&self, problem: &Problem, sequence: &dyn Sequence, piece: u64) -> Part {
+        let mut sums = Sums::new(problem);
+        let first = |piece: u64| piece * self.count / self.all_pieces();
+        for number in first(piece)..first(piece + 1) {
+            // The number of cells is within the limits by the way it was chosen.
+            if let Ok(bundle) = Bundle::nth(problem, sequence, number, self.cells) {
+                gather(&bundle, &self.source, &mut sums);
+            }
+        }
+        let crossings: f64 = problem.mesh.elements().map(|e| sums.crossings(e)).sum();
+        Part { sums: Some(sums), rays: (crossings * COST) as u64, ..Part::default() }
+    }
+
+    /// Takes in the next piece in order; whether it was the last.
+    pub fn absorb(&mut self, part: &Part) -> bool {
+        if let Some(sums) = &part.sums {
+            self.sums.add(sums);
+        }
+        self.absorbed += 1;
+        self.absorbed == self.all_pieces()
+    }
+
+    /// Merges what was gathered with what was `shot`, and forgets it.
+    pub fn merge(&mut self, problem: &Problem, shot: &mut Relaxation) {
+        if self.count == 0 {
+            return;
+        }
+        for e in problem.mesh.elements() {
+            if let Some(irradiance) = self.sums.irradiance(e) {
+                let area = problem.mesh.area(e);
+                shot.light_mut().merge_indirect(e, irradiance * area, self.precision.weight_of_bundles(area.into()));
+            }
+        }
+        (self.source, self.sums) = (Source::default(), Sums::default());
+    }
+
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+}

@@ -1,0 +1,216 @@
+//! Everything that is fast, in one complete solution: light is shot once, and every element then improves what landed on it.
+//!
+//! 1. *Shooting* (local lines, incremental): the power level, and a first irradiance, direct and indirect apart.
+//! 2. *Direct light*: each element looks for the lights ([`direct`]).
+//! 3. *Bundles*: elements gather what the others reflect along bundles of parallel global lines ([`bundles`]).
+//! 4. *Local lines*: elements that few lines of a bundle cross gather the same along rays of their own ([`local`]).
+//!
+//! Each estimate of direct and of indirect light is unbiased, and they are merged with weights that depend on what is expected, or on
+//! earlier complete solutions, never on their own noise. What is gathered is noisy, but averages over many elements, and the noise is
+//! another in each complete solution. How the rays are shared is decided in [`plan`]. With few rays for each element all shoot.
+//!
+//! Unbiased but for the quotient of counted crossings, of order 1 / N_i (see [`crate::transport::bundle_gather`]). Bundles see elements
+//! of one radiosity, wherever light has landed on them. Cost: one ray a sample; a crossing costs as much as a twelfth of a ray.
+
+mod bundles;
+mod direct;
+mod indirect;
+mod local;
+mod plan;
+
+use self::bundles::Bundles;
+use self::direct::Direct;
+use self::indirect::Indirect;
+use self::local::Local;
+use self::plan::Plan;
+use super::complete::CompleteSolution;
+use super::relaxation::{Course, Relaxation, Stage};
+use super::{Experience, Settings, sources};
+use crate::Problem;
+use crate::math::Rgb;
+use crate::math::hash::{derive, unit_f64};
+use crate::sampling::{Sequence, SequenceName};
+use crate::solution::Balance;
+use crate::solvers::Part;
+use std::ops::Range;
+
+/// With fewer rays an element than this there is no time to look around.
+const FEWEST_RAYS: u64 = 4;
+
+/// What is being done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+enum Phase {
+    Shooting,
+    Direct,
+    Bundles,
+    Local,
+    Done,
+}
+
+/// The state of one complete solution, and what it has learned from those before.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+pub struct Auto {
+    sequence: SequenceName,
+    seed: u64,
+    phase: Phase,
+    plan: Plan,
+    /// Flux [lm] of the rays that have shot.
+    ray_flux: f64,
+    /// Rays, or what costs as much, of the phases after shooting.
+    rays_after: u64,
+    shooting: Relaxation,
+    direct: Direct,
+    bundles: Bundles,
+    local: Local,
+    /// What the last complete solution has told of indirect light.
+    indirect: Indirect,
+}
+
+impl Auto {
+    /// Ready to be started.
+    pub fn new(problem: &Problem, settings: &Settings) -> Auto {
+        let stages = [Stage::Lamps, Stage::Emission, Stage::Incremental { share: 1.0, every_step: false }];
+        Auto {
+            sequence: settings.method.sequence,
+            seed: settings.seed,
+            phase: Phase::Done,
+            plan: Plan::default(),
+            ray_flux: 0.0,
+            rays_after: 0,
+            shooting: Relaxation::new(problem, settings, Course::new(&stages)),
+            direct: Direct::new(problem, settings),
+            bundles: Bundles::default(),
+            local: Local::default(),
+            indirect: Indirect::default(),
+        }
+    }
+
+    /// Begins the next phase that has something to do.
+    fn next_phase(&mut self, problem: &Problem) {
+        self.phase = match self.phase {
+            Phase::Shooting => {
+                self.ray_flux = ray_flux(problem, self.shooting.rays() as f64, &self.shooting.experience());
+                self.direct.begin(problem, self.plan.direct, self.ray_flux);
+                Phase::Direct
+            }
+            Phase::Direct => {
+                self.indirect = Indirect::of(problem, &self.shooting, self.ray_flux);
+                let known = |bundles, crossings| self.indirect.precision(self.ray_flux, bundles, crossings);
+                self.bundles.begin(problem, self.plan.bundles, known, self.shooting.light());
+                Phase::Bundles
+            }
+            Phase::Bundles => {
+                self.bundles.merge(problem, &mut self.shooting);
+                let u = unit_f64(derive(self.seed, Phase::Local as u64));
+                self.local.begin(problem, self.plan.local, self.bundles.precision(), u);
+                Phase::Local
+            }
+            Phase::Local | Phase::Done => Phase::Done,
+        };
+        if self.phase != Phase::Done && self.pieces_of_phase().is_empty() {
+            self.next_phase(problem);
+        }
+    }
+
+    fn pieces_of_phase(&self) -> Range<u64> {
+        match self.phase {
+            Phase::Shooting => self.shooting.pieces().unwrap_or(0..0),
+            Phase::Direct => self.direct.pieces(),
+            Phase::Bundles => self.bundles.pieces(),
+            Phase::Local => self.local.pieces(),
+            Phase::Done => 0..0,
+        }
+    }
+
+    /// The best plan by what is known, or a careful one.
+    fn plan_of(&self, problem: &Problem, rays: u64, experience: &Experience) -> Plan {
+        match self.direct.light() {
+            _ if rays < FEWEST_RAYS * problem.mesh.len() as u64 => Plan::only_shooting(rays),
+            None => Plan::careful(rays),
+            Some(direct) => Plan::best(problem, rays, experience, direct, &self.indirect),
+        }
+    }
+
+    /// The numbers of the running phase, independent of those of the others.
+    fn numbers(&self) -> Box<dyn Sequence> {
+        self.sequence.make(derive(self.seed, u64::MAX - self.phase as u64))
+    }
+}
+
+/// Flux [lm] of each of `rays` rays that shoot all emitted and all reflected light: they all carry about the same.
+fn ray_flux(problem: &Problem, rays: f64, experience: &Experience) -> f64 {
+    sources::total(problem) * (1.0 + experience.reflected_share) / rays.max(1.0)
+}
+
+#[typetag::serde]
+impl CompleteSolution for Auto {
+    fn restart(&mut self, problem: &Problem, seed: u64, rays: u64, experience: &Experience) {
+        self.seed = seed;
+        self.rays_after = 0;
+        self.plan = self.plan_of(problem, rays, experience);
+        self.phase = Phase::Shooting;
+        self.shooting.restart(problem, seed, self.plan.shooting, experience);
+        if self.pieces_of_phase().is_empty() {
+            self.next_phase(problem);
+        }
+    }
+
+    fn pieces(&self) -> Option<Range<u64>> {
+        (self.phase != Phase::Done).then(|| self.pieces_of_phase())
+    }
+
+    fn part(&self, problem: &Problem, piece: u64) -> Part {
+        match self.phase {
+            Phase::Shooting => self.shooting.part(problem, piece),
+            Phase::Direct => self.direct.part(problem, piece),
+            Phase::Bundles => self.bundles.part(problem, self.numbers().as_ref(), piece),
+            Phase::Local => self.local.part(problem, self.numbers().as_ref(), &self.shooting, piece),
+            Phase::Done => Part::default(),
+        }
+    }
+
+    fn absorb(&mut self, problem: &Problem, part: Part, experience: &Experience) {
+        if self.phase != Phase::Shooting {
+            self.rays_after += part.rays;
+        }
+        let complete = match self.phase {
+            Phase::Shooting => {
+                self.shooting.absorb(problem, part, experience);
+                self.shooting.pieces().is_none()
+            }
+            Phase::Direct => self.direct.absorb(problem, &part, &mut self.shooting),
+            Phase::Bundles => self.bundles.absorb(&part),
+            Phase::Local => self.local.absorb(problem, &part, &mut self.shooting),
+            Phase::Done => false,
+        };
+        if complete {
+            self.next_phase(problem);
+        }
+    }
+
+    fn irradiance(&self, problem: &Problem, e: u32) -> Rgb {
+        self.shooting.irradiance(problem, e)
+    }
+
+    fn rays(&self) -> u64 {
+        self.shooting.rays() + self.rays_after
+    }
+
+    fn balance(&self) -> Balance {
+        self.shooting.balance()
+    }
+
+    fn experience(&self) -> Experience {
+        self.shooting.experience()
+    }
+
+    fn stage(&self) -> &'static str {
+        match self.phase {
+            Phase::Shooting => self.shooting.stage(),
+            Phase::Direct => "looking for the lights",
+            Phase::Bundles => "gathering along bundles",
+            Phase::Local => "gathering along local lines",
+            Phase::Done => "done",
+        }
+    }
+}
