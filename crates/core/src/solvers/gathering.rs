@@ -5,7 +5,7 @@
 //! Unbiased for the given B. Cost: one ray each.
 
 use super::allocation::Allocation;
-use super::shooting::{BATCH, for_samples, ray_range};
+use super::shooting::{BATCH, NO_SAMPLES, for_samples, ray_range};
 use super::{Landing, Part};
 use crate::Problem;
 use crate::geometry::{Hit, Ray};
@@ -29,10 +29,11 @@ impl Sweep<'_> {
         let range = ray_range(piece, self.allocation.rays());
         let mut part = Part { rays: range.end - range.start, ..Part::default() };
         let mut batch = Batch::default();
+        let mut samples = NO_SAMPLES;
         for share in self.allocation.shares(range) {
             let departure = Departure::new(self.problem, share.source, Footprint::WHOLE);
             let first = self.counters.next(share.source) + u64::from(share.before);
-            for_samples(self.sequence, share.source, first, share.count, |sample| {
+            for_samples(self.sequence, share.source, first, share.count, &mut samples, |sample| {
                 batch.rays.push(departure.ray(sample));
                 batch.receivers.push((share.source, share.rays));
                 if batch.rays.len() == BATCH {

@@ -33,6 +33,7 @@ pub struct Light {
     lamps: Vec<Rgb>,
     pub direct: Vec<Rgb>,
     pub indirect: Vec<Rgb>,
+    /// What waits to be shot; while elements gather, the radiosity [lm/m²] they see (see [`Light::show`]).
     unshot: Vec<Rgb>,
     /// The elements that have unshot flux, in order.
     active: Vec<u32>,
@@ -101,9 +102,19 @@ impl Light {
         self.footprint.get(e as usize).copied().unwrap_or(Footprint::WHOLE)
     }
 
-    /// Radiosity [lm/m²] that a line sees which meets `spot` of element `e`.
-    pub fn seen_radiosity(&self, mesh: &ElementMesh, e: u32, spot: Spot) -> Rgb {
-        self.reflected_radiosity(mesh, e) * self.footprint(e).density(spot)
+    /// Shows the reflected radiosity of all elements to those that gather. What has not been shot is given up: its memory is
+    /// used.
+    pub fn show(&mut self, mesh: &ElementMesh) {
+        self.active.clear();
+        for e in mesh.elements() {
+            self.unshot[e as usize] = self.reflected_radiosity(mesh, e);
+        }
+    }
+
+    /// Radiosity [lm/m²] that a line sees which meets `spot` of element `e`, as it was when it was shown.
+    #[inline]
+    pub fn seen_radiosity(&self, e: u32, spot: Spot) -> Rgb {
+        self.unshot[e as usize] * self.footprint(e).density(spot)
     }
 
     /// Flux [lm] that element `e` has yet to shoot.

@@ -141,6 +141,7 @@ impl Relaxation {
         self.step += 1;
         self.draw = if stage == Stage::Gathering {
             self.merging = Merging::expect(problem, &self.light, self.emission_ray_flux, self.reflected_ray_flux());
+            self.light.show(&problem.mesh);
             Draw::Local(self.merging.allocate(problem, rays, u))
         } else if self.uses_global_lines(stage) {
             self.light.expect(u64::MAX);

@@ -76,7 +76,7 @@ impl Relaxation {
         let sweep = gathering::Sweep { problem, sequence, counters: &self.counters, allocation };
         sweep.gather(piece, |i, n, j, spot| {
             let [direct, indirect] = self.merging.weights(problem.mesh.area(i), n);
-            (problem.mesh.emission(j) * direct + self.light.seen_radiosity(&problem.mesh, j, spot) * indirect)
+            (problem.mesh.emission(j) * direct + self.light.seen_radiosity(j, spot) * indirect)
                 / n as f32
         })
     }
