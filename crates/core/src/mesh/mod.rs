@@ -11,6 +11,7 @@ mod build;
 pub mod cells;
 mod clip;
 mod cut;
+mod locate;
 mod lookup;
 mod mip;
 mod morton;
@@ -20,6 +21,7 @@ mod sparse;
 mod triangle;
 
 pub use cut::Cut;
+pub use locate::{Point, TOGETHER};
 pub use lookup::Lookup;
 pub use resolution::Resolution;
 

@@ -5,8 +5,8 @@ use crate::{Problem, Solution};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// Pieces in flight for each thread: enough that nobody waits, few enough that memory stays small.
-const PIECES_PER_THREAD: u64 = 4;
+/// Pieces in flight for each thread: enough that nobody waits for the last of them, few enough that memory stays small.
+const PIECES_PER_THREAD: u64 = 16;
 
 /// Runs `solver` on the current rayon pool until it is done, or until `observe` breaks off, and returns the best
 /// solution it has. `observe` is called many times a second.

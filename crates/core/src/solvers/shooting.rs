@@ -13,7 +13,7 @@ use crate::sampling::{Sample, Sequence};
 use crate::transport::{Arrival, Departure, Footprint, arrivals, lamp};
 
 /// Rays of one piece: large enough to hide the cost of handing out work, small enough to share well.
-pub const RAYS_PER_PIECE: u64 = 1 << 14;
+pub const RAYS_PER_PIECE: u64 = 1 << 12;
 /// Rays traced at once; origins within a batch are neighbours.
 pub(super) const BATCH: usize = 512;
 

@@ -99,9 +99,11 @@ impl Footprint {
             self.halve(noise.rotate_left(32));
         }
         self.counts += 1 << (COUNT_BITS * spot.cell());
-        if below(self.count(spot.cell()), mix(noise)) == 0 {
-            self.remember(spot.cell(), spot.on_cell());
-        }
+        // As a mask: nobody could guess a branch.
+        let is_remembered = u64::from(below(self.count(spot.cell()), mix(noise)) == 0);
+        let shift = SPOT_BITS * spot.cell();
+        let mask = (is_remembered * SPOT_MASK) << shift;
+        self.spots = self.spots & !mask | spot.on_cell() << shift & mask;
     }
 
     /// Adds the landings of `other`. `noise` is any random number.

@@ -7,7 +7,7 @@ use crate::math::Rgb;
 use crate::math::hash::mix;
 use crate::mesh::ElementMesh;
 use crate::solvers::Part;
-use crate::transport::{Footprint, Leaving, Spot};
+use crate::transport::{Footprint, Leaving};
 
 /// Where light on an element comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,10 +111,10 @@ impl Light {
         }
     }
 
-    /// Radiosity [lm/m²] that a line sees which meets `spot` of element `e`, as it was when it was shown.
+    /// Reflected radiosity [lm/m²] of element `e`, as it was when it was shown.
     #[inline]
-    pub fn seen_radiosity(&self, e: u32, spot: Spot) -> Rgb {
-        self.unshot[e as usize] * self.footprint(e).density(spot)
+    pub fn shown(&self, e: u32) -> Rgb {
+        self.unshot[e as usize]
     }
 
     /// Flux [lm] that element `e` has yet to shoot.
