@@ -29,18 +29,21 @@ impl ElementMesh {
         mut each: impl FnMut(usize, Option<(u32, Vec2)>),
     ) {
         let mut surfaces = [Surface::NONE; TOGETHER];
-        let mut patches = [(Patch::NONE, Vec2::ZERO); TOGETHER];
+        let mut on_patch = [(0, Vec2::ZERO); TOGETHER];
+        let mut patches = [Patch::NONE; TOGETHER];
         let last = self.surfaces.len() - 1;
         for (k, surface) in surfaces[..count].iter_mut().enumerate() {
             *surface = self.surfaces[(point(k).triangle as usize).min(last)];
         }
-        for (k, (surface, (patch, within))) in surfaces[..count].iter().zip(&mut patches).enumerate() {
+        for (k, (surface, on_patch)) in surfaces[..count].iter().zip(&mut on_patch).enumerate() {
             let (number, uv) = surface.slices.locate(point(k).uv);
-            *patch = self.patches[(surface.first_patch + number) as usize];
-            *within = uv;
+            *on_patch = (surface.first_patch + number, uv);
         }
-        for (k, (surface, &(patch, uv))) in surfaces[..count].iter().zip(&patches).enumerate() {
-            let back = point(k).back;
+        for (patch, &(number, _)) in patches.iter_mut().zip(&on_patch[..count]) {
+            *patch = self.patches[number as usize];
+        }
+        for (k, (surface, patch)) in surfaces[..count].iter().zip(&patches).enumerate() {
+            let (uv, back) = (on_patch[k].1, point(k).back);
             let (cell, within) = cells::locate(uv, patch.divisions);
             let offset = if back { cells::count(patch.divisions) } else { 0 };
             each(k, (surface.two_sided || !back).then_some((patch.first_element + offset + cell, within)));

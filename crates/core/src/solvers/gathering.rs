@@ -34,7 +34,8 @@ impl Sweep<'_> {
     ) -> Part {
         let range = ray_range(piece, self.allocation.rays());
         let mut part = Part { rays: range.end - range.start, ..Part::default() };
-        let mut batch = Batch { rays: Vec::new(), receivers: Vec::new(), hits: Vec::new(), met: Vec::new() };
+        let mut batch =
+            Batch { rays: Vec::new(), receivers: Vec::new(), hits: Vec::new(), met: Vec::new(), seen: Vec::new() };
         let mut samples = NO_SAMPLES;
         for share in self.allocation.shares(range) {
             let departure = Departure::new(self.problem, share.source, Footprint::WHOLE);
@@ -57,7 +58,8 @@ struct Batch<Seen> {
     rays: Vec<Ray>,
     receivers: Vec<(u32, u32)>,
     hits: Vec<Hit>,
-    met: Vec<(Arrival, Seen)>,
+    met: Vec<Arrival>,
+    seen: Vec<Seen>,
 }
 
 impl<Seen: Copy> Batch<Seen> {
@@ -70,11 +72,11 @@ impl<Seen: Copy> Batch<Seen> {
         part: &mut Part,
     ) {
         self.met.clear();
+        arrivals(problem, &self.rays, &mut self.hits, |_, arrival| self.met.push(arrival));
         // All look, those too that met nothing, and before anything is done with what they see: so memory answers many at once.
-        arrivals(problem, &self.rays, &mut self.hits, |_, arrival| {
-            self.met.push((arrival, look(arrival.element().unwrap_or(0))));
-        });
-        for (&(element, rays), &(arrival, seen)) in self.receivers.iter().zip(&self.met) {
+        self.seen.clear();
+        self.seen.extend(self.met.iter().map(|arrival| look(arrival.element().unwrap_or(0))));
+        for ((&(element, rays), &arrival), &seen) in self.receivers.iter().zip(&self.met).zip(&self.seen) {
             let seen = match arrival {
                 Arrival::Element { spot, .. } => light(element, rays, seen, spot),
                 Arrival::BackFace | Arrival::Escaped => Rgb::BLACK,

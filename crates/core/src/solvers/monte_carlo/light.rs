@@ -27,7 +27,7 @@ pub struct Landed {
     pub reflected: f64,
 }
 
-/// Flux on every element, 92 bytes each (104 in a scene with lights without extent).
+/// Flux on every element, 96 bytes each (108 in a scene with lights without extent).
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Light {
     lamps: Vec<Rgb>,
@@ -57,7 +57,7 @@ impl Light {
             direct: dark(),
             indirect: dark(),
             unshot: dark(),
-            active: Vec::new(),
+            active: Vec::with_capacity(elements),
             landed: vec![[0.0; 3]; elements],
             footprint: vec![Footprint::WHOLE; tracked],
             fresh: vec![Footprint::WHOLE; tracked],
@@ -236,7 +236,8 @@ impl Light {
 
     /// Finds the elements that have unshot flux.
     pub fn find_active(&mut self) {
-        self.active = (0..self.unshot.len() as u32).filter(|&e| !self.unshot[e as usize].is_black()).collect();
+        self.active.clear();
+        self.active.extend((0..self.unshot.len() as u32).filter(|&e| !self.unshot[e as usize].is_black()));
     }
 
     /// Merges `gathered` light [lm] on element `e` into what was shot, with these weights of direct and indirect light.

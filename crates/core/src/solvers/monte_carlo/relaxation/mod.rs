@@ -228,6 +228,11 @@ impl CompleteSolution for Relaxation {
         self.sweeps.flux(e, self.light.on(e), self.stage().is_none()) / problem.mesh.area(e)
     }
 
+    fn retire(&mut self) {
+        self.light = Light::new(0, false, Leaving::WholeElement);
+        self.draw = Draw::Local(Allocation::default());
+    }
+
     fn rays(&self) -> u64 {
         self.rays_done
     }
