@@ -77,7 +77,7 @@ mod tests {
                 let k = first + k as u32;
                 let u = (k as f32 * 0.618_034).fract();
                 let uv = Vec2::new(u, (k as f32 * 0.414_214).fract() * (1.0 - u));
-                Point { triangle: k.wrapping_mul(2_654_435_761) % triangles, uv, back: k % 3 == 0 }
+                Point { triangle: k.wrapping_mul(2_654_435_761) % triangles, uv, back: k.is_multiple_of(3) }
             };
             let mut count = 0;
             mesh.locate_together(TOGETHER, point, |k, found| {

@@ -220,7 +220,7 @@ fn inside((corner, length): (Vec2, f32), uv: Vec2) -> Vec2 {
 
 /// A whole number below `limit`, of at most 32 bits, each as likely as the others if `noise` is random.
 fn below(limit: u64, noise: u64) -> u64 {
-    (noise >> 32) * limit >> 32
+    ((noise >> 32) * limit) >> 32
 }
 
 #[cfg(test)]
