@@ -5,13 +5,14 @@
 #                EMBREE=1 puts Embree beside it, which needs Debian's libembree-dev (apt-get install libembree-dev)
 #   make studies                  the nine published experiments in full: an hour
 #   make study-reference-rooms    real rooms against an independent renderer
+#   make growth                   time to a fixed accuracy from 10^4 to 10^6 elements, in two rooms
 #   make study-methods            all methods on one scene, error and time
 
 ISOLUX = target/release/isolux
 
 STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count
 
-.PHONY: demo test bench lint build studies study-reference-rooms study-methods
+.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods
 
 build:
 	cargo build --release --locked
@@ -41,6 +42,9 @@ studies: build
 
 study-reference-rooms:
 	cargo run --release --locked -p isolux-testing --bin reference-rooms
+
+growth:
+	cargo run --release --locked -p isolux-testing --bin growth
 
 study-methods:
 	cargo run --release --locked -p isolux-testing --bin methods

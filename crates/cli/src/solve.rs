@@ -1,6 +1,7 @@
 //! `isolux solve`: from a scene to a solution, in files.
 
 use crate::arguments::{PictureArguments, SceneArguments, ThreadArguments};
+use crate::drafts::Drafts;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
 use crate::method::MethodArguments;
@@ -10,7 +11,7 @@ use crate::progress::{Display, ProgressArguments, Watch};
 use crate::summary::{Ended, Summary};
 use crate::{input, terminal};
 use isolux_core::mesh::Resolution;
-use isolux_core::run::run;
+use isolux_core::run;
 use isolux_core::solvers::Solver;
 use isolux_core::solvers::deterministic;
 use isolux_core::solvers::monte_carlo::{Budget, MonteCarlo, Settings};
@@ -28,6 +29,7 @@ Examples:
   isolux solve cornell-box -o cornell.png
   isolux solve room.glb -o lit.glb -o lit.png -o lit.isolux
   isolux solve room.glb --elements 1e6 --time 10min -o lit.isolux
+  isolux solve room.glb --time 1min --every 5s -o lit.png
   isolux solve labyrinth:rho=0.9 --rays 50M --seed 7 --json > summary.json
   isolux solve cubes --method random-walk --estimator absorption --sequence halton
   isolux solve cubes --method gauss-seidel --factors hemicube --elements 1000
@@ -72,6 +74,11 @@ pub struct Solve {
     /// Instead: time to solve, like 90, 90s, 2min or 1.5h; reading and writing come on top
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     time: Option<Duration>,
+
+    /// Write the files while solving, too, with so much time between: first drafts after half a second, without
+    /// smoothing and with one ray a pixel. The time they take is part of that to solve
+    #[arg(long, value_name = "TIME", value_parser = parse_time, requires = "outputs")]
+    every: Option<Duration>,
 
     /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = Settings::default().seed)]
@@ -163,7 +170,7 @@ impl Solve {
 
         interrupt.keep_result();
         let start = Instant::now();
-        let (solution, ended) = self.solve(solver.as_mut(), &problem, display, start, interrupt);
+        let (solution, ended) = self.solve(solver.as_mut(), &problem, outputs, display, start, interrupt);
         let seconds = start.elapsed().as_secs_f64();
         drop(solver);
 
@@ -226,14 +233,19 @@ impl Solve {
         &self,
         solver: &mut dyn Solver,
         problem: &Problem,
+        outputs: &Outputs,
         display: &mut Display,
         start: Instant,
         interrupt: &Interrupt,
     ) -> (Solution, Ended) {
+        let mut drafts = self.every.map(|every| Drafts::new(outputs, self.picture.options(), every, start));
         let mut watch = Watch::new(display, start, self.time);
         let mut ended = Ended::Complete;
-        let mut solution = run(solver, problem, |progress| {
-            watch.show(progress);
+        let mut solution = run::watch(solver, problem, |solver| {
+            watch.show(&solver.progress());
+            if let Some(drafts) = drafts.as_mut().filter(|_| !interrupt.is_asked()) {
+                drafts.write(solver, problem);
+            }
             if interrupt.is_asked() {
                 ended = Ended::Interrupted;
             } else if self.time.is_some_and(|limit| start.elapsed() >= limit) {
@@ -241,6 +253,9 @@ impl Solve {
             }
             if ended == Ended::Complete { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
+        if let Some(failure) = drafts.and_then(|drafts| drafts.failure) {
+            display.say(&format!("drafts ended early: {failure}"));
+        }
         let stopped = match ended {
             Ended::Complete => return (solution, ended),
             Ended::TimeLimit => "by the time limit",

@@ -127,7 +127,7 @@ impl MonteCarlo {
             }));
         }
         if self.is_finished() {
-            return;
+            return self.complete.retire();
         }
         if self.settings.budget == Budget::Endless && self.replicates.count_in_round() == self.replicates_in_round {
             self.replicates.close_round();

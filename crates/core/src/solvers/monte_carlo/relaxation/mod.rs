@@ -141,6 +141,7 @@ impl Relaxation {
         self.step += 1;
         self.draw = if stage == Stage::Gathering {
             self.merging = Merging::expect(problem, &self.light, self.emission_ray_flux, self.reflected_ray_flux());
+            self.light.show(&problem.mesh);
             Draw::Local(self.merging.allocate(problem, rays, u))
         } else if self.uses_global_lines(stage) {
             self.light.expect(u64::MAX);
@@ -225,6 +226,11 @@ impl CompleteSolution for Relaxation {
 
     fn irradiance(&self, problem: &Problem, e: u32) -> Rgb {
         self.sweeps.flux(e, self.light.on(e), self.stage().is_none()) / problem.mesh.area(e)
+    }
+
+    fn retire(&mut self) {
+        self.light = Light::new(0, false, Leaving::WholeElement);
+        self.draw = Draw::Local(Allocation::default());
     }
 
     fn rays(&self) -> u64 {
