@@ -110,7 +110,8 @@ fn reference_solution(
 
 /// One complete solution of `rays` rays, with elements of constant radiosity to the letter.
 pub fn single(method: Method, rays: u64, seed: u64) -> Settings {
-    Settings { method, seed, budget: Budget::Rays(rays), replicates: 1, leaving: Leaving::WholeElement }
+    let budget = Budget::Rays(rays);
+    Settings { method, seed, budget, replicates: 1, leaving: Leaving::WholeElement, ..Settings::default() }
 }
 
 /// Runs `solver` to its end; `None` if `watch` breaks off.
