@@ -18,6 +18,7 @@ pub mod run;
 mod series;
 pub mod signs;
 pub mod spec;
+mod stopwatch;
 mod task;
 
 pub use error::Error;

@@ -2,18 +2,20 @@
 
 use crate::Error;
 use crate::bench::single;
-use isolux_core::Problem;
-use isolux_core::Solution;
 use isolux_core::mesh::ElementMesh;
 use isolux_core::sampling::SequenceName;
 use isolux_core::solution::luminance_error;
 use isolux_core::solvers::monte_carlo::axes::Walk;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, Method, Settings};
+use isolux_core::{Problem, Solution};
+use std::f64::consts::SQRT_2;
 
 /// Elements darker than this share of the mean count as if they were as bright: nobody sees their relative error.
 const DARK: f64 = 0.01;
 /// Elements whose reference has a larger relative error than this are left out where elements count alike.
 const UNKNOWN: f64 = 0.2;
+/// Median of the absolute value of a normal deviate of variance one.
+const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 /// Seed of all references, far from those of what is held against them.
 const SEED: u64 = 1_000_000;
 
@@ -99,27 +101,32 @@ impl Reference {
         self.weighted(&problem.mesh, |e| (solution.irradiance[e as usize].luminance_f64() - self.on(e)).powi(2))
     }
 
-    /// All errors of `irradiance(e)` [lux]; the variance of the reference is taken off the first two, element by element.
+    /// All errors of `irradiance(e)` [lux]. The variance of the reference is taken off the squares element by element, and off the
+    /// square of the median as if errors were normal.
     ///
     /// Where elements count alike, dark ones count as if they had a hundredth of the mean irradiance, and those that the reference
     /// itself does not know to a fifth are left out.
     pub fn errors(&self, mesh: &ElementMesh, irradiance: impl Fn(u32) -> f64) -> Errors {
         let difference = |e: u32| irradiance(e) - self.on(e);
         let least = self.least(mesh);
+        let relative = |e: u32, lux: f64| lux / self.on(e).max(least);
         let known = || mesh.elements().filter(|&e| self.is_known(e, least));
-        let squares = known().map(|e| (difference(e).powi(2) - self.variance(e)) / self.on(e).max(least).powi(2));
+        let squares = known().map(|e| relative(e, difference(e)).powi(2) - relative(e, self.std_error(e)).powi(2));
         let unweighted = (squares.sum::<f64>() / known().count() as f64).max(0.0).sqrt();
-        let mut absolute: Vec<f64> = known().map(|e| (difference(e) / self.on(e).max(least)).abs()).collect();
-        let middle = absolute.len() / 2;
-        let median =
-            if absolute.is_empty() { f64::NAN } else { *absolute.select_nth_unstable_by(middle, f64::total_cmp).1 };
-        Errors { weighted: self.weighted(mesh, |e| difference(e).powi(2)), unweighted, median }
+        let own = NORMAL_MEDIAN * median(known().map(|e| relative(e, self.std_error(e))));
+        let both = median(known().map(|e| relative(e, difference(e)).abs()));
+        Errors {
+            weighted: self.weighted(mesh, |e| difference(e).powi(2)),
+            unweighted,
+            median: (both.powi(2) - own.powi(2)).max(0.0).sqrt(),
+        }
     }
 
     /// Its own errors, as it states them.
     pub fn own(&self, mesh: &ElementMesh) -> Errors {
-        // Twice the variance less the variance.
-        self.errors(mesh, |e| self.on(e) + std::f64::consts::SQRT_2 * self.std_error[e as usize])
+        // What is off by the root of two standard errors has twice the variance, and once it is taken off.
+        let errors = self.errors(mesh, |e| self.on(e) + SQRT_2 * self.std_error(e));
+        Errors { median: errors.median * NORMAL_MEDIAN / (2.0 - NORMAL_MEDIAN.powi(2)).sqrt(), ..errors }
     }
 
     /// Share of the elements that it does not know well enough where elements count alike.
@@ -130,7 +137,8 @@ impl Reference {
 
     /// Relative RMS over the area of what has these squares [lux²]; the reference's own variance is taken off.
     fn weighted(&self, mesh: &ElementMesh, square: impl Fn(u32) -> f64) -> f64 {
-        let sum = mesh.elements().map(|e| f64::from(mesh.area(e)) * (square(e) - self.variance(e))).sum::<f64>();
+        let sum =
+            mesh.elements().map(|e| f64::from(mesh.area(e)) * (square(e) - self.std_error(e).powi(2))).sum::<f64>();
         (sum / mesh.total_area()).max(0.0).sqrt() / self.mean(mesh)
     }
 
@@ -142,13 +150,20 @@ impl Reference {
         DARK * self.mean(mesh)
     }
 
-    fn variance(&self, e: u32) -> f64 {
-        self.std_error[e as usize].powi(2)
+    fn std_error(&self, e: u32) -> f64 {
+        self.std_error[e as usize]
     }
 
     fn is_known(&self, e: u32, least: f64) -> bool {
-        self.std_error[e as usize] <= UNKNOWN * self.on(e).max(least)
+        self.std_error(e) <= UNKNOWN * self.on(e).max(least)
     }
+}
+
+/// The middle one of `values`; not a number if there are none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let middle = values.len() / 2;
+    if values.is_empty() { f64::NAN } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 #[cfg(test)]
@@ -188,11 +203,14 @@ mod tests {
     fn what_the_reference_does_not_know_is_taken_off() {
         let (mesh, mut reference) = (mesh(), Reference::exact(5.0, 12));
         reference.std_error = vec![0.3; 12];
-        let Errors { weighted, unweighted, .. } = reference.errors(&mesh, |_| 5.0 + 0.5);
+        let Errors { weighted, unweighted, median } = reference.errors(&mesh, |_| 5.0 + 0.5);
         [weighted, unweighted].into_iter().for_each(|error| assert_near(error, 0.4 / 5.0));
+        assert_near(median.powi(2), (0.25 - (NORMAL_MEDIAN * 0.3).powi(2)) / 25.0);
         let own = reference.own(&mesh);
         [own.weighted, own.unweighted].into_iter().for_each(|error| assert_near(error, 0.3 / 5.0));
-        assert_eq!(reference.errors(&mesh, |e| reference.on(e)).weighted, 0.0, "not the root of a negative number");
+        assert_near(own.median, NORMAL_MEDIAN * 0.3 / 5.0);
+        let none = Errors { weighted: 0.0, unweighted: 0.0, median: 0.0 };
+        assert_eq!(reference.errors(&mesh, |e| reference.on(e)), none, "no roots of negative numbers");
     }
 
     #[test]

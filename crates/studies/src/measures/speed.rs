@@ -8,16 +8,18 @@
 use super::Measure;
 use crate::Error;
 use crate::bench::Drive;
-use crate::machine::thread_seconds;
 use crate::reference::{Errors, Kind};
 use crate::results::Row;
+use crate::stopwatch::Stopwatch;
 use crate::task::Task;
 use isolux_core::solvers::Solver;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::time::{Duration, Instant};
 
 /// The first look [s].
 const FIRST: f64 = 0.25;
+/// How long it works before it may look again.
+const STRETCH: Duration = Duration::from_millis(10);
 
 pub struct Speed;
 
@@ -67,19 +69,26 @@ fn looks(task: &mut Task, light: LightPart) -> Result<Option<Vec<Look>>, Error> 
     let problem = task.problem()?;
     let method = task.series().method()?;
     let settings = Settings { method, light, seed: task.point.seed, budget: Budget::Endless, ..Settings::default() };
-    let thread = ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut looks = vec![NO_LOOK; (0..).take_while(|&k| place(k) <= task.point.at * 1.001).count()];
-    let (solver, mut seconds) = timed(&thread, || MonteCarlo::new(&problem, settings));
-    let (mut solver, mut drive) = (solver?, Drive::new());
+    let (mut stopwatch, mut drive) = (Stopwatch::new()?, Drive::new());
+    let mut solver = stopwatch.time(|| MonteCarlo::new(&problem, settings))?;
     while looks.last().is_some_and(|last| last[0].is_nan()) {
-        let (goes_on, took) = timed(&thread, || drive.go_on(&mut solver, &problem));
-        seconds += took;
+        let goes_on = stopwatch.time(|| {
+            let start = Instant::now();
+            while drive.go_on(&mut solver, &problem) {
+                if start.elapsed() > STRETCH {
+                    return true;
+                }
+            }
+            false
+        });
         if task.is_stopped() {
             return Ok(None);
         }
         if !goes_on {
             break;
         }
+        let seconds = stopwatch.seconds();
         // The last place that was passed: a long step may pass several.
         let passed = (0..looks.len()).rev().find(|&k| place(k) <= seconds);
         if let Some(look) = passed.map(|k| &mut looks[k]).filter(|look| look[0].is_nan()) {
@@ -90,13 +99,4 @@ fn looks(task: &mut Task, light: LightPart) -> Result<Option<Vec<Look>>, Error> 
         }
     }
     Ok(Some(looks))
-}
-
-/// Does `work` on `thread`; what came of it, and its seconds.
-fn timed<T: Send>(thread: &ThreadPool, work: impl FnOnce() -> T + Send) -> (T, f64) {
-    thread.install(|| {
-        let start = thread_seconds();
-        let done = work();
-        (done, thread_seconds() - start)
-    })
 }
