@@ -180,10 +180,10 @@ impl Solver for MonteCarlo {
     }
 
     fn solution(&self, problem: &Problem) -> Solution {
-        let unfinished = self.replicates.count() == 0;
+        let (unfinished, dark) = (self.replicates.count() == 0, self.is_dark());
         let mean = |e| if unfinished { self.complete.irradiance(problem, e) } else { self.replicates.estimate(e).0 };
         let std_error = |e| match unfinished {
-            _ if self.is_dark() => Rgb::BLACK,
+            _ if dark => Rgb::BLACK,
             true => Rgb::grey(f32::NAN),
             false => self.replicates.estimate(e).1.map(f32::sqrt),
         };
