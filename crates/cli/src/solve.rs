@@ -14,7 +14,7 @@ use isolux_core::mesh::Resolution;
 use isolux_core::run;
 use isolux_core::solvers::Solver;
 use isolux_core::solvers::deterministic;
-use isolux_core::solvers::monte_carlo::{Budget, MonteCarlo, Settings};
+use isolux_core::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
 use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
 use std::ops::ControlFlow;
@@ -31,6 +31,7 @@ Examples:
   isolux solve room.glb --elements 1e6 --time 10min -o lit.isolux
   isolux solve room.glb --time 1min --every 5s -o lit.png
   isolux solve labyrinth:rho=0.9 --rays 50M --seed 7 --json > summary.json
+  isolux solve room.glb --light indirect -o bounced.csv
   isolux solve cubes --method random-walk --estimator absorption --sequence halton
   isolux solve cubes --method gauss-seidel --factors hemicube --elements 1000
 
@@ -96,6 +97,11 @@ pub struct Solve {
     #[arg(long, value_parser = parse_leaving)]
     leaving: Option<Leaving>,
 
+    /// Which light on each element: all, or indirect, what was reflected at least once, for those who add direct light by
+    /// themselves. The balance is that of all light either way [default: all]
+    #[arg(long, value_name = "PART", value_parser = parse_light)]
+    light: Option<LightPart>,
+
     #[command(flatten)]
     method: MethodArguments,
 
@@ -121,6 +127,11 @@ pub struct Solve {
 fn parse_leaving(text: &str) -> Result<Leaving, String> {
     let found = Leaving::ALL.into_iter().find(|leaving| leaving.name() == text);
     found.ok_or_else(|| format!("it is one of {}", Leaving::ALL.map(Leaving::name).join(", ")))
+}
+
+fn parse_light(text: &str) -> Result<LightPart, String> {
+    let found = LightPart::ALL.into_iter().find(|part| part.name() == text);
+    found.ok_or_else(|| format!("it is one of {}", LightPart::ALL.map(LightPart::name).join(", ")))
 }
 
 fn parse_objects(text: &str) -> Result<usize, String> {
@@ -203,6 +214,10 @@ impl Solve {
             let what = format!("{} draws no random numbers: it has no --{name}", entry.name);
             return Err(Failure::usage(what).with_help("leave it out; --time limits every method"));
         }
+        if self.light == Some(LightPart::Indirect) {
+            let what = format!("{} solves for all light together: it has no --light indirect", entry.name);
+            return Err(Failure::usage(what).with_help("choose a method of Monte Carlo, like stochastic-jacobi"));
+        }
         Ok(Chosen::Deterministic(entry, self.method.deterministic_settings(entry, self.seed)?))
     }
 
@@ -220,12 +235,15 @@ impl Solve {
             );
         }
         let default = Settings::default();
+        let light = self.light.unwrap_or(default.light);
+        method.check_light(light)?;
         Ok(Settings {
             method,
             seed: self.seed,
             budget,
             replicates: self.replicates.unwrap_or(default.replicates),
             leaving: self.leaving.unwrap_or(default.leaving),
+            light,
         })
     }
 

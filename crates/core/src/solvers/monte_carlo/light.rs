@@ -2,7 +2,7 @@
 //!
 //! Light is kept as flux [lm], in parts that converge differently and are merged with gathered light separately.
 
-use super::to_rgb;
+use super::{LightPart, to_rgb};
 use crate::math::Rgb;
 use crate::math::hash::mix;
 use crate::mesh::ElementMesh;
@@ -90,6 +90,14 @@ impl Light {
     /// All flux [lm] on element `e`.
     pub fn on(&self, e: u32) -> Rgb {
         self.shot_first(e) + self.indirect[e as usize]
+    }
+
+    /// That part of the flux [lm] on element `e`.
+    pub fn part_on(&self, part: LightPart, e: u32) -> Rgb {
+        match part {
+            LightPart::All => self.on(e),
+            LightPart::Indirect => self.indirect[e as usize],
+        }
     }
 
     /// Radiosity [lm/m²] that element `e` reflects.
@@ -240,12 +248,12 @@ impl Light {
         self.active.extend((0..self.unshot.len() as u32).filter(|&e| !self.unshot[e as usize].is_black()));
     }
 
-    /// Merges `gathered` light [lm] on element `e` into what was shot, with these weights of direct and indirect light.
+    /// Merges `gathered` light [lm] on element `e` into what was shot, with these weights of direct and indirect light. All of it
+    /// counts as indirect, as it is if the weight of direct light is 0.
     pub fn merge(&mut self, e: u32, gathered: Rgb, [direct, indirect]: [f32; 2]) {
         let k = e as usize;
-        let shot = self.direct[k] * (1.0 - direct) + self.indirect[k] * (1.0 - indirect);
-        self.direct[k] = Rgb::BLACK;
-        self.indirect[k] = shot + gathered;
+        self.direct[k] = self.direct[k] * (1.0 - direct);
+        self.indirect[k] = self.indirect[k] * (1.0 - indirect) + gathered;
     }
 
     /// Ends a regular iteration: what has landed is another estimate of all reflected light, averaged in with weight `share`.

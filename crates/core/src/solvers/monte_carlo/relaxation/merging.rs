@@ -63,6 +63,11 @@ impl Merging {
         }
     }
 
+    /// Where direct light is of no interest: nothing of it is gathered.
+    pub fn of_indirect_light(self) -> Merging {
+        Merging { direct: Variances::default(), ..self }
+    }
+
     /// Weights of gathering for direct and indirect light.
     pub fn weights(&self, area: f32, n: u32) -> [f32; 2] {
         [self.direct.weight(area, n), self.indirect.weight(area, n)]
