@@ -3,15 +3,16 @@
 #   make test    every test
 #   make bench   speed of the ray kernel and of global lines, into docs/performance.md
 #                EMBREE=1 puts Embree beside it, which needs Debian's libembree-dev (apt-get install libembree-dev)
-#   make studies                  the nine published experiments in full: an hour
+#   make studies                  the nine published experiments and the study of speed in full: two hours
 #   make study-reference-rooms    real rooms against an independent renderer
+#   make growth                   time to a fixed accuracy from 10^4 to 10^6 elements, in two rooms
 #   make study-methods            all methods on one scene, error and time
 
 ISOLUX = target/release/isolux
 
-STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count
+STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count speed
 
-.PHONY: demo test bench lint build studies study-reference-rooms study-methods
+.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods
 
 build:
 	cargo build --release --locked
@@ -41,6 +42,9 @@ studies: build
 
 study-reference-rooms:
 	cargo run --release --locked -p isolux-testing --bin reference-rooms
+
+growth:
+	cargo run --release --locked -p isolux-testing --bin growth
 
 study-methods:
 	cargo run --release --locked -p isolux-testing --bin methods

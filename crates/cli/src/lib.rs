@@ -6,6 +6,7 @@
 mod arguments;
 mod check;
 mod compare;
+mod drafts;
 mod factors;
 mod failure;
 mod input;

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::numbers;
 use crate::progress::Display;
+use isolux_core::view::VertexField;
 use isolux_core::{Problem, Solution};
 use isolux_io::export::{self, ExportOptions, Exporter, LitScene};
 use isolux_io::files::OutputFile;
@@ -48,6 +49,20 @@ impl OpenFiles {
         file.map_or(Ok(()), |file| file.finish(bytes).map_err(|error| Failure::after_the_work(&error)))
     }
 
+    /// Puts `bytes` into the place of file number `k`, which stays open: it will be written again. Nothing happens if the files were
+    /// dropped, and nobody can drop them meanwhile.
+    ///
+    /// # Errors
+    /// A failure if it cannot be written.
+    pub fn rewrite(&self, k: usize, bytes: &[u8]) -> Result<(), Failure> {
+        let mut files = self.lock();
+        let Some(slot) = files.get_mut(k) else { return Ok(()) };
+        let Some(file) = slot.as_ref() else { return Ok(()) };
+        let again = OutputFile::create(file.path())?;
+        let file = slot.replace(again);
+        file.map_or(Ok(()), |file| file.finish(bytes)).map_err(|error| Failure::after_the_work(&error))
+    }
+
     /// Drops all unfinished files: older files of their names stay as they were.
     pub fn drop_all(&self) {
         self.lock().clear();
@@ -87,6 +102,25 @@ impl Outputs {
             list.push((path.clone(), export::for_path(path)?));
         }
         Ok(Outputs { files: OpenFiles::create(paths, inputs)?, list })
+    }
+
+    /// Writes a draft of all files, which will be written again. The vertices of an `earlier` draft are used once more.
+    ///
+    /// # Errors
+    /// The first failure; the files after it keep what they have.
+    pub fn write_draft(
+        &self,
+        problem: &Problem,
+        solution: &Solution,
+        options: &ExportOptions,
+        earlier: Option<VertexField>,
+    ) -> Result<Option<VertexField>, Failure> {
+        let lit = LitScene::draft(problem, solution, earlier);
+        for (k, (path, format)) in self.list.iter().enumerate() {
+            let failed = |error| Failure::other(format!("{}: {error}", path.display()));
+            self.files.rewrite(k, &(format.write)(&lit, options).map_err(failed)?)?;
+        }
+        Ok(lit.into_field())
     }
 
     /// Writes all files. If one cannot be written the others still are.

@@ -1,6 +1,7 @@
 //! `isolux solve`: from a scene to a solution, in files.
 
 use crate::arguments::{PictureArguments, SceneArguments, ThreadArguments};
+use crate::drafts::Drafts;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
 use crate::method::MethodArguments;
@@ -10,10 +11,10 @@ use crate::progress::{Display, ProgressArguments, Watch};
 use crate::summary::{Ended, Summary};
 use crate::{input, terminal};
 use isolux_core::mesh::Resolution;
-use isolux_core::run::run;
+use isolux_core::run;
 use isolux_core::solvers::Solver;
 use isolux_core::solvers::deterministic;
-use isolux_core::solvers::monte_carlo::{Budget, MonteCarlo, Settings};
+use isolux_core::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
 use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
 use std::ops::ControlFlow;
@@ -28,7 +29,9 @@ Examples:
   isolux solve cornell-box -o cornell.png
   isolux solve room.glb -o lit.glb -o lit.png -o lit.isolux
   isolux solve room.glb --elements 1e6 --time 10min -o lit.isolux
+  isolux solve room.glb --time 1min --every 5s -o lit.png
   isolux solve labyrinth:rho=0.9 --rays 50M --seed 7 --json > summary.json
+  isolux solve room.glb --light indirect -o bounced.csv
   isolux solve cubes --method random-walk --estimator absorption --sequence halton
   isolux solve cubes --method gauss-seidel --factors hemicube --elements 1000
 
@@ -73,6 +76,11 @@ pub struct Solve {
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     time: Option<Duration>,
 
+    /// Write the files while solving, too, with so much time between: first drafts after half a second, without
+    /// smoothing and with one ray a pixel. The time they take is part of that to solve
+    #[arg(long, value_name = "TIME", value_parser = parse_time, requires = "outputs")]
+    every: Option<Duration>,
+
     /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = Settings::default().seed)]
     seed: u64,
@@ -88,6 +96,11 @@ pub struct Solve {
     /// frames, whole-element is the radiosity system to the letter [default: where-landed]
     #[arg(long, value_parser = parse_leaving)]
     leaving: Option<Leaving>,
+
+    /// Which light on each element: all, or indirect, what was reflected at least once, for those who add direct light by
+    /// themselves. The balance is that of all light either way [default: all]
+    #[arg(long, value_name = "PART", value_parser = parse_light)]
+    light: Option<LightPart>,
 
     #[command(flatten)]
     method: MethodArguments,
@@ -114,6 +127,11 @@ pub struct Solve {
 fn parse_leaving(text: &str) -> Result<Leaving, String> {
     let found = Leaving::ALL.into_iter().find(|leaving| leaving.name() == text);
     found.ok_or_else(|| format!("it is one of {}", Leaving::ALL.map(Leaving::name).join(", ")))
+}
+
+fn parse_light(text: &str) -> Result<LightPart, String> {
+    let found = LightPart::ALL.into_iter().find(|part| part.name() == text);
+    found.ok_or_else(|| format!("it is one of {}", LightPart::ALL.map(LightPart::name).join(", ")))
 }
 
 fn parse_objects(text: &str) -> Result<usize, String> {
@@ -163,7 +181,7 @@ impl Solve {
 
         interrupt.keep_result();
         let start = Instant::now();
-        let (solution, ended) = self.solve(solver.as_mut(), &problem, display, start, interrupt);
+        let (solution, ended) = self.solve(solver.as_mut(), &problem, outputs, display, start, interrupt);
         let seconds = start.elapsed().as_secs_f64();
         drop(solver);
 
@@ -196,6 +214,10 @@ impl Solve {
             let what = format!("{} draws no random numbers: it has no --{name}", entry.name);
             return Err(Failure::usage(what).with_help("leave it out; --time limits every method"));
         }
+        if self.light == Some(LightPart::Indirect) {
+            let what = format!("{} solves for all light together: it has no --light indirect", entry.name);
+            return Err(Failure::usage(what).with_help("choose a method of Monte Carlo, like stochastic-jacobi"));
+        }
         Ok(Chosen::Deterministic(entry, self.method.deterministic_settings(entry, self.seed)?))
     }
 
@@ -213,12 +235,15 @@ impl Solve {
             );
         }
         let default = Settings::default();
+        let light = self.light.unwrap_or(default.light);
+        method.check_light(light)?;
         Ok(Settings {
             method,
             seed: self.seed,
             budget,
             replicates: self.replicates.unwrap_or(default.replicates),
             leaving: self.leaving.unwrap_or(default.leaving),
+            light,
         })
     }
 
@@ -226,14 +251,19 @@ impl Solve {
         &self,
         solver: &mut dyn Solver,
         problem: &Problem,
+        outputs: &Outputs,
         display: &mut Display,
         start: Instant,
         interrupt: &Interrupt,
     ) -> (Solution, Ended) {
+        let mut drafts = self.every.map(|every| Drafts::new(outputs, self.picture.options(), every, start));
         let mut watch = Watch::new(display, start, self.time);
         let mut ended = Ended::Complete;
-        let mut solution = run(solver, problem, |progress| {
-            watch.show(progress);
+        let mut solution = run::watch(solver, problem, |solver| {
+            watch.show(&solver.progress());
+            if let Some(drafts) = drafts.as_mut().filter(|_| !interrupt.is_asked()) {
+                drafts.write(solver, problem);
+            }
             if interrupt.is_asked() {
                 ended = Ended::Interrupted;
             } else if self.time.is_some_and(|limit| start.elapsed() >= limit) {
@@ -241,6 +271,9 @@ impl Solve {
             }
             if ended == Ended::Complete { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
+        if let Some(failure) = drafts.and_then(|drafts| drafts.failure) {
+            display.say(&format!("drafts ended early: {failure}"));
+        }
         let stopped = match ended {
             Ended::Complete => return (solution, ended),
             Ended::TimeLimit => "by the time limit",

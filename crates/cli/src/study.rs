@@ -6,9 +6,11 @@ use crate::interrupt::{Interrupt, watch};
 use crate::numbers::time;
 use crate::output::OpenFiles;
 use crate::progress::ProgressArguments;
+use crate::report::Table;
 use crate::terminal;
+use isolux_studies::ratios::Ratio;
 use isolux_studies::report::Report;
-use isolux_studies::{Error, Options, Outcome, Progress, STUDIES, Study, run};
+use isolux_studies::{Error, Options, Outcome, Progress, SCENES, STUDIES, Study, left_out, run};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -43,6 +45,11 @@ pub struct StudyCommand {
     #[arg(short, long = "output", value_name = "DIR")]
     output: Option<PathBuf>,
 
+    /// Folder of scenes that are no part of isolux, which 'speed' asks for: living-room.glb and classroom.glb. Without
+    /// them it does with the others
+    #[arg(long, value_name = "DIR", default_value = SCENES)]
+    scenes: PathBuf,
+
     #[command(flatten)]
     threads: ThreadArguments,
 
@@ -66,7 +73,14 @@ impl StudyCommand {
             .map_err(|error| Failure::usage(format!("{}: cannot make this folder: {error}", folder.display())))?;
         interrupt.keep_result();
         let mut display = self.progress.display(false);
-        let options = Options { quick: self.quick, seeds: self.seeds };
+        let options = Options { quick: self.quick, seeds: self.seeds, scenes: Some(self.scenes.clone()) };
+        let left_out = left_out(study, &options).map_err(failure)?;
+        if !left_out.is_empty() {
+            terminal::note(&format!(
+                "{}: not there, so these scenes are left out; --scenes names the folder",
+                named(&left_out)
+            ));
+        }
         let (start, mut next_line) = (Instant::now(), Duration::ZERO);
         let outcome = run(study, options, &folder, |progress| {
             display.work(progress.share, &mut next_line, start, || in_short(progress, start));
@@ -74,7 +88,7 @@ impl StudyCommand {
         });
         display.clear();
         match outcome.map_err(failure)? {
-            Outcome::Complete(report) => terminal::print(&in_words(&report, &folder)).map(|()| 0),
+            Outcome::Complete(report) => terminal::print(&in_words(&report, &folder, &left_out)).map(|()| 0),
             Outcome::Stopped { points_done, points } => {
                 let kept = format!("stopped: {points_done} of {points} measurements are kept in {}", folder.display());
                 terminal::note(&format!("{kept}; the same command goes on from there"));
@@ -112,7 +126,11 @@ fn in_short(progress: &Progress, start: Instant) -> String {
     format!("{left} · {} of {} · {}", progress.points_done, progress.points, progress.what)
 }
 
-fn in_words(report: &Report, folder: &Path) -> String {
+fn named(files: &[PathBuf]) -> String {
+    files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+}
+
+fn in_words(report: &Report, folder: &Path, left_out: &[PathBuf]) -> String {
     let mut text = format!("{}\n", report.title);
     if !report.fits.is_empty() {
         text += "\nSlopes, with 95 % confidence\n";
@@ -124,14 +142,44 @@ fn in_words(report: &Report, folder: &Path) -> String {
         let slope = isolux_studies::signs::in_words(fit.slope.mean, fit.slope.high - fit.slope.mean);
         text += &format!("  {:<12} {:<scene$}  {:<series$}  {slope}\n", fit.plot, fit.scene, fit.series);
     }
+    text += &equal_errors(&report.ratios);
     text += "\nWhat was claimed, and whether it shows here\n";
     for verdict in &report.verdicts {
         let mark = if verdict.holds { "yes" } else { "no " };
         text += &format!("  {mark}  {:<scene$}  {} ({})\n", verdict.scene, verdict.claim, verdict.found);
+    }
+    if !left_out.is_empty() {
+        text += &format!("\nLeft out, for there is no {}\n", named(left_out));
     }
     text += &format!("\nWritten to {}: result.csv", folder.display());
     for file in &report.files {
         text += &format!(", {}", file.file_name().unwrap_or_default().to_string_lossy());
     }
     text + "\n"
+}
+
+/// A table of how much faster series are, a column for each plot; nothing if nothing was compared.
+fn equal_errors(ratios: &[Ratio]) -> String {
+    let Some(Ratio { at, against, .. }) = ratios.first() else { return String::new() };
+    let mut plots: Vec<&str> = ratios.iter().map(|ratio| ratio.plot.as_str()).collect();
+    plots.dedup();
+    let mut rows: Vec<(&str, &str)> = Vec::new();
+    for ratio in ratios {
+        let row = (ratio.scene.as_str(), ratio.series.as_str());
+        if !rows.contains(&row) {
+            rows.push(row);
+        }
+    }
+    let mut table = Table::new(&[&["scene, series"], plots.as_slice()].concat());
+    for (scene, series) in rows {
+        let cell = |plot: &&str| {
+            let is_here = |ratio: &&Ratio| ratio.plot == **plot && (&*ratio.scene, &*ratio.series) == (scene, series);
+            ratios.iter().find(is_here).map_or_else(|| "-".to_owned(), Ratio::in_words)
+        };
+        table.row(&format!("{scene}, {series}"), plots.iter().map(cell).collect::<Vec<_>>());
+    }
+    let head = format!(
+        "Time of {against} to the error of each after {at} s, in multiples of that (~ beyond what was measured)"
+    );
+    format!("\n{head}\n{}", table.lines())
 }

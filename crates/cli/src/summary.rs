@@ -74,6 +74,10 @@ impl Summary<'_> {
         if self.is_deterministic() {
             notes.push("a deterministic method has no error bars; a finer run tells how far it is off".to_owned());
         }
+        if self.solution.provenance.parameters.contains(&("light".to_owned(), "indirect".to_owned())) {
+            let what = "irradiance is that of reflected light alone, as --light indirect asks; the balance is that of all light";
+            notes.push(what.to_owned());
+        }
         let escaped = self.solution.balance.escaped / self.solution.balance.emitted;
         if escaped > NOTICEABLE {
             notes.push(format!("{} of the light left the scene through openings", percent(escaped)));

@@ -90,6 +90,15 @@ fn bad_usage_is_explained() {
 
 #[cfg(unix)]
 #[test]
+fn indirect_light_is_refused_by_methods_that_cannot_tell_it() {
+    let folder = Folder::new();
+    let refused = |method: &str| folder.fails(2, &["solve", "box", "--method", method, "--light", "indirect"]);
+    assert!(refused("random-walk").contains("cannot be told apart afterwards"));
+    assert!(refused("gauss-seidel").contains("all light together"));
+    assert!(folder.fails(2, &["solve", "box", "--light", "direct"]).contains("one of all, indirect"));
+}
+
+#[test]
 fn a_reader_that_goes_away_is_no_failure() {
     let folder = Folder::new();
     let mut child = folder.command(&["list"]).stdout(std::process::Stdio::piped()).spawn().unwrap();

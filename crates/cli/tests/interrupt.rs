@@ -52,6 +52,35 @@ fn the_first_signal_keeps_the_result() {
 }
 
 #[test]
+fn drafts_are_written_whole_and_again_and_again() {
+    let folder = Folder::new();
+    let child =
+        start(&folder, &["solve", "box", "--elements", "200", "--time", "1h", "--every", "0.05s", "-o", "a.isolux"]);
+    let rays_of_draft = || -> u64 {
+        folder.prints(&["render", "a.isolux", "-o", "b.json"]);
+        let summary: Value = serde_json::from_slice(&folder.read("b.json")).unwrap();
+        assert_eq!(summary["parameters"]["stopped"], "not yet");
+        summary["rays"].as_u64().unwrap()
+    };
+    let begin = Instant::now();
+    let patient = || assert!(begin.elapsed() < Duration::from_secs(120), "no draft");
+    while !folder.names().contains(&"a.isolux".to_owned()) {
+        patient();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let first = rays_of_draft();
+    while rays_of_draft() == first {
+        patient();
+    }
+    send("-INT", &child);
+    assert_eq!(end(child).status.code(), Some(130));
+    assert_eq!(folder.names(), ["a.isolux", "b.json"]);
+    folder.prints(&["render", "a.isolux", "-o", "b.json"]);
+    let summary: Value = serde_json::from_slice(&folder.read("b.json")).unwrap();
+    assert_eq!(summary["parameters"]["stopped"], "by the user");
+}
+
+#[test]
 fn before_there_is_a_result_the_first_signal_ends_it_and_leaves_old_files() {
     let folder = Folder::new();
     folder.write("a.csv", b"old");

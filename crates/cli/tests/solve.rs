@@ -60,6 +60,20 @@ fn the_same_seed_gives_the_same_bytes_for_any_number_of_threads() {
 }
 
 #[test]
+fn indirect_light_is_part_of_all_light_and_says_so() {
+    let folder = Folder::new();
+    let [all, indirect] =
+        ["all", "indirect"].map(|light| folder.json(&with(&["solve", "--json", "--light", light], &SMALL)));
+    let mean = |summary: &serde_json::Value| summary["objects"][0]["mean"].as_f64().unwrap();
+    assert!(0.0 < mean(&indirect) && mean(&indirect) < mean(&all), "{indirect}");
+    assert_eq!(all["balance"], indirect["balance"]);
+    assert_eq!(indirect["parameters"]["light"], "indirect");
+    assert!(
+        indirect["remarks"].to_string().contains("reflected light alone") && all["remarks"] == serde_json::json!([])
+    );
+}
+
+#[test]
 fn a_time_limit_is_kept_and_written_down() {
     let folder = Folder::new();
     let summary = folder.json(&["solve", "box", "--elements", "100", "--time", "0.5s", "--json", "-o", "a.isolux"]);

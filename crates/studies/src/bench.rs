@@ -1,30 +1,26 @@
-//! What measurements share: the scene that is on the bench, and its reference solution.
+//! What measurements share: the scene that is on the bench, its reference solutions, and who drives a solver.
 
 use crate::Error;
+use crate::reference::{Errors, Kind, Reference};
+use crate::results::short;
 use crate::spec::{SceneSpec, Spec};
 use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
-use isolux_core::sampling::SequenceName;
 use isolux_core::scene::builtin::builtin;
-use isolux_core::solvers::monte_carlo::axes::Walk;
 use isolux_core::solvers::monte_carlo::{Budget, Method, MonteCarlo, Settings};
 use isolux_core::solvers::{Part, Solver};
 use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
+use isolux_io::import::{ImportOptions, read_scene};
 use isolux_io::{files, solution_file};
 use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
-/// The solution that errors are measured against.
-#[derive(Debug)]
-pub struct Reference {
-    /// Irradiance [lux], luminance, of every element.
-    irradiance: Vec<f64>,
-    /// Its own relative error, to be taken off.
-    error: f64,
-}
+/// What is known of the references.
+const REFERENCES: &str = "references.csv";
 
 /// Asked now and then whether to go on; told what is being done.
 pub type Watch<'a> = dyn FnMut(&str) -> ControlFlow<()> + 'a;
@@ -32,13 +28,15 @@ pub type Watch<'a> = dyn FnMut(&str) -> ControlFlow<()> + 'a;
 pub struct Bench {
     /// Where references are kept between runs.
     folder: PathBuf,
+    /// Where scenes are that are files.
+    scenes: PathBuf,
     problem: Option<((String, u64), Arc<Problem>)>,
     references: Vec<(String, Arc<Reference>)>,
 }
 
 impl Bench {
-    pub fn new(folder: &Path) -> Bench {
-        Bench { folder: folder.to_owned(), problem: None, references: Vec::new() }
+    pub fn new(folder: &Path, scenes: &Path) -> Bench {
+        Bench { folder: folder.to_owned(), scenes: scenes.to_owned(), problem: None, references: Vec::new() }
     }
 
     /// The problem of `scene`, cut into about `elements` elements.
@@ -46,19 +44,22 @@ impl Bench {
     /// # Errors
     /// If there is no such scene.
     pub fn problem(&mut self, scene: &SceneSpec, elements: u64) -> Result<Arc<Problem>, Error> {
-        let key = (scene.scene.clone(), elements);
+        let key = (scene.source().to_owned(), elements);
         if let Some((_, problem)) = self.problem.as_ref().filter(|(name, _)| *name == key) {
             return Ok(Arc::clone(problem));
         }
-        let problem = Arc::new(Problem::new(builtin(&scene.scene)?, Resolution::Elements(elements))?);
+        let geometry = match &scene.file {
+            Some(file) => read_scene(&self.scenes.join(file), &ImportOptions::default())?,
+            None => builtin(scene.source())?,
+        };
+        let problem = Arc::new(Problem::new(geometry, Resolution::Elements(elements))?);
         self.problem = Some((key, Arc::clone(&problem)));
         Ok(problem)
     }
 
-    /// The reference for methods of that walk; `None` if `watch` breaks off.
+    /// A reference of `scene`; `None` if `watch` breaks off.
     ///
-    /// The exact solution if the scene has one. Else that of a breadth-first sweep, or for continuous walks of particle tracing,
-    /// with the study's number of rays; it is kept in a file.
+    /// The exact solution if the scene has one. Else it is computed with the study's number of rays, and kept in a file.
     ///
     /// # Errors
     /// If the file cannot be read or written.
@@ -66,31 +67,50 @@ impl Bench {
         &mut self,
         spec: &Spec,
         scene: &SceneSpec,
-        walk: Walk,
+        kind: Kind,
         watch: &mut Watch,
     ) -> Result<Option<Arc<Reference>>, Error> {
         let problem = self.problem(scene, scene.elements)?;
         let rays = spec.reference_rays.unwrap_or(1e8) as u64;
-        let kind = if walk == Walk::Discrete { "shirley" } else { "particle-tracing" };
-        let name = format!("reference-{}-{kind}-{rays}.isolux", scene.scene.replace([':', '='], "-"));
+        let (source, kind_name) = (scene.source().replace([':', '=', '.'], "-"), kind.name());
+        let name = format!("reference-{source}-{kind_name}-{rays}.isolux");
         if let Some((_, reference)) = self.references.iter().find(|(known, _)| *known == name) {
             return Ok(Some(Arc::clone(reference)));
         }
         let reference = match scene.exact {
-            Some(exact) => Reference { irradiance: vec![exact; problem.mesh.len()], error: 0.0 },
+            Some(exact) => Reference::exact(exact, problem.mesh.len()),
             None => {
                 let path = self.folder.join(&name);
-                let method = Method { sequence: SequenceName::OWEN_SOBOL, ..Method::named(kind)? };
-                let settings = Settings { replicates: 16, ..single(method, rays, 1_000_000) };
-                let Some(solution) = reference_solution(&problem, &path, settings, watch)? else { return Ok(None) };
-                let irradiance = solution.irradiance.iter().map(|lux| lux.luminance_f64()).collect();
-                Reference { irradiance, error: solution.rms_error(&problem) }
+                let Some(solution) = reference_solution(&problem, &path, kind.settings(rays)?, watch)? else {
+                    return Ok(None);
+                };
+                let reference = Reference::new(&solution);
+                self.note(&name, &problem, &solution, &reference)?;
+                reference
             }
         };
         self.references.push((name, Arc::new(reference)));
         Ok(self.references.last().map(|(_, reference)| Arc::clone(reference)))
     }
+
+    /// Notes in a table what is known of the reference called `name`.
+    fn note(&self, name: &str, problem: &Problem, solution: &Solution, reference: &Reference) -> Result<(), Error> {
+        let path = self.folder.join(REFERENCES);
+        let known = if path.exists() { files::read(&path)? } else { Vec::new() };
+        let known = String::from_utf8_lossy(&known).into_owned();
+        let others: Vec<&str> = known.lines().skip(1).filter(|line| line.split(',').next() != Some(name)).collect();
+        let Errors { weighted, unweighted, median } = reference.own(&problem.mesh);
+        let seconds = solution.provenance.parameters.iter().find(|(name, _)| name == SECONDS);
+        let seconds = seconds.map_or("", |(_, value)| value);
+        let numbers = [weighted, unweighted, median, reference.unknown(&problem.mesh)].map(short).join(",");
+        let own = format!("{name},{},{},{seconds},{numbers}", problem.mesh.len(), solution.work.rays);
+        let lines = [&["reference,elements,rays,seconds,weighted,unweighted,median,unknown"][..], &others, &[&own]];
+        Ok(files::OutputFile::create(&path)?.finish((lines.concat().join("\n") + "\n").as_bytes())?)
+    }
 }
+
+/// The parameter of a reference that says how long it took.
+const SECONDS: &str = "seconds";
 
 /// Reads the reference solution, or computes and keeps it.
 fn reference_solution(
@@ -102,15 +122,18 @@ fn reference_solution(
     if path.exists() {
         return Ok(Some(solution_file::read(&path.to_string_lossy(), &files::read(path)?)?.1));
     }
+    let start = Instant::now();
     let mut solver = MonteCarlo::new(problem, settings)?;
-    let Some(solution) = solve(&mut solver, problem, "reference", watch) else { return Ok(None) };
+    let Some(mut solution) = solve(&mut solver, problem, "reference", watch) else { return Ok(None) };
+    solution.provenance.parameters.push((SECONDS.to_owned(), short(start.elapsed().as_secs_f64().round())));
     files::OutputFile::create(path)?.finish(&solution_file::write(problem, &solution)?)?;
     Ok(Some(solution))
 }
 
 /// One complete solution of `rays` rays, with elements of constant radiosity to the letter.
 pub fn single(method: Method, rays: u64, seed: u64) -> Settings {
-    Settings { method, seed, budget: Budget::Rays(rays), replicates: 1, leaving: Leaving::WholeElement }
+    let budget = Budget::Rays(rays);
+    Settings { method, seed, budget, replicates: 1, leaving: Leaving::WholeElement, ..Settings::default() }
 }
 
 /// Runs `solver` to its end; `None` if `watch` breaks off.
@@ -155,25 +178,5 @@ impl Drive {
     /// Whether a step has just ended.
     pub fn is_between_steps(&self) -> bool {
         self.left.is_empty()
-    }
-}
-
-impl Reference {
-    /// Area-weighted RMS error of luminance irradiance, relative to the reference's mean; the reference's own error is taken off.
-    pub fn error(&self, problem: &Problem, solution: &Solution) -> f64 {
-        let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
-        for e in problem.mesh.elements() {
-            let (weight, exact) = (f64::from(problem.mesh.area(e)), self.on(e));
-            area += weight;
-            sum += weight * exact;
-            sum_sq += weight * (solution.irradiance[e as usize].luminance_f64() - exact).powi(2);
-        }
-        let square = sum_sq / area / (sum / area).powi(2);
-        (square - self.error.powi(2)).max(0.0).sqrt()
-    }
-
-    /// Irradiance [lux] of element `e`.
-    pub fn on(&self, e: u32) -> f64 {
-        self.irradiance[e as usize]
     }
 }

@@ -24,6 +24,10 @@ pub enum Error {
     #[error("{path}: line {line}: {what}", path = path.display())]
     Table { path: PathBuf, line: u64, what: String },
 
+    /// The thread on which time is measured.
+    #[error("no thread can be started: {0}")]
+    Thread(#[from] rayon::ThreadPoolBuildError),
+
     #[error("the plot '{file}': {what}")]
     Plot { file: String, what: String },
 }

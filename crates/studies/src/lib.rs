@@ -10,16 +10,19 @@ pub mod fit;
 pub mod machine;
 pub mod measures;
 pub mod plot;
+pub mod ratios;
+mod reference;
 pub mod report;
 pub mod results;
 pub mod run;
 mod series;
 pub mod signs;
 pub mod spec;
+mod stopwatch;
 mod task;
 
 pub use error::Error;
-pub use run::{Options, Outcome, Progress, run};
+pub use run::{Options, Outcome, Progress, SCENES, left_out, run};
 pub use spec::Spec;
 
 /// A study that can be asked for by name.
@@ -47,6 +50,7 @@ pub const STUDIES: &[Study] = studies![
     "variance",
     "cost",
     "ray-count",
+    "speed",
 ];
 
 impl Study {

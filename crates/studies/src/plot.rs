@@ -68,7 +68,11 @@ pub fn svg(spec: &Spec, plot: &PlotSpec, table: &Table) -> Result<String, Error>
     let rows = panels.len().div_ceil(columns.max(1));
     let (width, height) = if panels.len() > 1 { PANEL } else { LONE_PANEL };
     let width = width * columns.max(1) as u32;
-    let legend = Legend::new(&series, width);
+    let is_drawn = |series: &&&Series| {
+        panels.iter().any(|(_, curves)| curves.iter().any(|curve| curve.series.name == series.name))
+    };
+    let drawn: Vec<&Series> = series.iter().filter(is_drawn).copied().collect();
+    let legend = Legend::new(&drawn, width);
     let head = TITLE_HEIGHT + legend.height();
     let mut svg = String::new();
     {

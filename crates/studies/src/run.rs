@@ -8,14 +8,25 @@ use crate::task::Task;
 use crate::{Error, Study, machine, measures};
 use isolux_io::files::{self, OutputFile};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-#[derive(Clone, Copy, Debug, Default)]
+/// Where scenes are that are no part of isolux, unless told otherwise.
+pub const SCENES: &str = "../shared/scenes";
+
+#[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Fewer scenes, samples and seeds: under two minutes.
     pub quick: bool,
     /// Runs of each point, if not what the study says.
     pub seeds: Option<u64>,
+    /// Folder of the scenes that are files, if not [`SCENES`].
+    pub scenes: Option<PathBuf>,
+}
+
+impl Options {
+    fn scenes(&self) -> PathBuf {
+        self.scenes.clone().unwrap_or_else(|| PathBuf::from(SCENES))
+    }
 }
 
 /// A point of a curve, measured with one seed.
@@ -73,11 +84,11 @@ pub fn run(
     folder: &Path,
     mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<Outcome, Error> {
-    let spec = effective(study, options)?;
+    let spec = effective(study, &options)?;
     let mut measure = measures::named(&spec.measure)?;
     spec.check(measure.columns()).map_err(|what| Error::Spec { study: study.name.to_owned(), what })?;
     let points = points(&spec);
-    identify(study, options, folder)?;
+    identify(study, &options, folder)?;
     let path = folder.join(RESULT);
     let mut table = if path.exists() { Table::read(&path, measure.columns())? } else { Table::new(measure.columns()) };
     let is_done = |table: &Table, point: &Point| {
@@ -88,7 +99,7 @@ pub fn run(
     let left: Vec<Point> = points.iter().copied().filter(|point| !is_done(&table, point)).collect();
     let work_of = |points: &[Point]| points.iter().map(Point::work).sum::<f64>();
     let (all, all_left) = (work_of(&points), work_of(&left));
-    let mut bench = Bench::new(folder);
+    let mut bench = Bench::new(folder, &options.scenes());
     let mut done = 0.0;
     for (k, point) in left.iter().enumerate() {
         let (scene, series) = (&spec.scenes[point.scene], &spec.series[point.series]);
@@ -117,10 +128,27 @@ pub fn run(
     Ok(Outcome::Complete(report::write(&spec, &table, folder)?))
 }
 
-fn effective(study: Study, options: Options) -> Result<Spec, Error> {
+/// The files of scenes that `study` would measure in and that are not there: these scenes are left out.
+///
+/// # Errors
+/// Those of [`Study::spec`].
+pub fn left_out(study: Study, options: &Options) -> Result<Vec<PathBuf>, Error> {
+    let files = asked(study, options)?.scenes.into_iter().filter_map(|scene| scene.file);
+    Ok(files.map(|file| options.scenes().join(file)).filter(|path| !path.exists()).collect())
+}
+
+/// What is asked for, whatever is there.
+fn asked(study: Study, options: &Options) -> Result<Spec, Error> {
     let spec = study.spec()?;
     let mut spec = if options.quick { spec.quick() } else { spec };
     spec.seeds = options.seeds.unwrap_or(spec.seeds).max(1);
+    Ok(spec)
+}
+
+/// What is measured: all but the scenes that are not there.
+fn effective(study: Study, options: &Options) -> Result<Spec, Error> {
+    let mut spec = asked(study, options)?;
+    spec.scenes.retain(|scene| scene.file.as_ref().is_none_or(|file| options.scenes().join(file).exists()));
     Ok(spec)
 }
 
@@ -141,7 +169,7 @@ fn points(spec: &Spec) -> Vec<Point> {
 }
 
 /// Says in the folder whose results it holds, or holds what it says against this run.
-fn identify(study: Study, options: Options, folder: &Path) -> Result<(), Error> {
+fn identify(study: Study, options: &Options, folder: &Path) -> Result<(), Error> {
     let path = folder.join("run.toml");
     let own =
         format!("study = \"{}\"\nquick = {}\nversion = \"{}\"\n", study.name, options.quick, isolux_core::VERSION);

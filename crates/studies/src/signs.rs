@@ -1,6 +1,7 @@
 //! Whether the claims of a study show in what was measured.
 
 use crate::fit::{Place, curve, slope};
+use crate::ratios;
 use crate::results::{Table, short};
 use crate::spec::{PlotSpec, Sign, Spec};
 
@@ -21,7 +22,7 @@ pub fn verdicts(table: &Table, spec: &Spec) -> Vec<Verdict> {
     for sign in &spec.signs {
         let Some(plot) = spec.plots.iter().find(|plot| plot.file == sign.plot) else { continue };
         for scene in spec.scenes.iter().filter(|scene| sign.concerns(&scene.name)) {
-            if let Some((holds, found)) = look(table, plot, &scene.name, sign) {
+            if let Some((holds, found)) = look(table, spec, plot, &scene.name, sign) {
                 let (claim, scene) = (sign.claim.clone(), scene.name.clone());
                 verdicts.push(Verdict { claim, scene, holds, found, robust: sign.robust });
             }
@@ -30,7 +31,7 @@ pub fn verdicts(table: &Table, spec: &Spec) -> Vec<Verdict> {
     verdicts
 }
 
-fn look(table: &Table, plot: &PlotSpec, scene: &str, sign: &Sign) -> Option<(bool, String)> {
+fn look(table: &Table, spec: &Spec, plot: &PlotSpec, scene: &str, sign: &Sign) -> Option<(bool, String)> {
     let of = |series: &str| slope(table, plot, scene, series).map(|fit| fit.slope);
     if let Some([low, high]) = sign.slope {
         let slope = of(&sign.series)?;
@@ -50,6 +51,10 @@ fn look(table: &Table, plot: &PlotSpec, scene: &str, sign: &Sign) -> Option<(boo
     if let (Some([low, high]), Some(x)) = (sign.value, sign.where_x) {
         let value = at(&curve(table, plot, scene, &sign.series), x)?;
         return Some(((low..=high).contains(&value), format!("{value:.3} at {}", short(x))));
+    }
+    if let Some([low, high]) = sign.faster {
+        let ratio = ratios::ratio(table, plot, scene, &sign.series, spec.equal_error.as_ref()?)?;
+        return Some(((low..=high).contains(&ratio.times), format!("{} times as long", ratio.in_words())));
     }
     let (Some([low, high]), Some(other)) = (sign.times, &sign.of) else { return None };
     let [own, other] = [&sign.series, other].map(|series| curve(table, plot, scene, series));

@@ -22,6 +22,8 @@ pub struct Spec {
     pub reference_rays: Option<f64>,
     pub series: Vec<Series>,
     pub plots: Vec<PlotSpec>,
+    /// Whether to say how much faster series are at equal error.
+    pub equal_error: Option<EqualError>,
     #[serde(default)]
     pub signs: Vec<Sign>,
     /// What differs in a quick run.
@@ -34,12 +36,24 @@ pub struct SceneSpec {
     /// As plots call it.
     pub name: String,
     /// A built-in scene with its parameters.
-    pub scene: String,
+    pub scene: Option<String>,
+    /// Instead: a file in the folder of scenes that are no part of isolux. Without it the scene is left out.
+    pub file: Option<String>,
     pub elements: u64,
     /// Irradiance [lux] on all elements, where it is known.
     pub exact: Option<f64>,
     /// The last place where anything is measured in it.
     pub up_to: Option<f64>,
+}
+
+/// How much faster series are at equal error, in every plot of an error against time: see [`crate::ratios`].
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct EqualError {
+    /// The series that all are held against.
+    pub against: String,
+    /// When a series has the error that the other one has to reach.
+    pub at: f64,
 }
 
 /// A curve of a plot.
@@ -107,6 +121,8 @@ pub struct Sign {
     /// At this x, y lies between `value[0]` and `value[1]`.
     pub where_x: Option<f64>,
     pub value: Option<[f64; 2]>,
+    /// The series that all are held against takes so many times as long to the same error: `[low, high]`.
+    pub faster: Option<[f64; 2]>,
     /// Whether continuous integration holds it in quick runs.
     #[serde(default)]
     pub robust: bool,
@@ -142,7 +158,8 @@ impl Spec {
 
     /// Whether a point of both is measured in the same way; plots, signs and where they measure may differ.
     pub fn measures_as(&self, other: &Spec) -> bool {
-        let same = |a: &SceneSpec, b: &SceneSpec| (&a.scene, a.elements, a.exact) == (&b.scene, b.elements, b.exact);
+        let same =
+            |a: &SceneSpec, b: &SceneSpec| (a.source(), a.elements, a.exact) == (b.source(), b.elements, b.exact);
         let common =
             |scene: &SceneSpec| other.scenes.iter().all(|known| known.name != scene.name || same(known, scene));
         let agrees =
@@ -168,19 +185,33 @@ impl Spec {
             }
             plot.series.iter().try_for_each(|name| among(name, &series))?;
         }
+        if let Some(wrong) = self.scenes.iter().find(|scene| scene.scene.is_some() == scene.file.is_some()) {
+            return Err(format!("'{}' is either a scene or a file", wrong.name));
+        }
+        if let Some(equal_error) = &self.equal_error {
+            among(&equal_error.against, &series)?;
+        }
         for sign in &self.signs {
             among(&sign.plot, &plots)?;
             let names = [Some(&sign.series), sign.steeper_than.as_ref(), sign.of.as_ref()];
             names.into_iter().flatten().try_for_each(|name| among(name, &series))?;
         }
         let tests = |sign: &Sign| {
-            [sign.slope.is_some(), sign.steeper_than.is_some(), sign.times.is_some(), sign.value.is_some()]
+            let relative = [sign.steeper_than.is_some(), sign.times.is_some(), sign.faster.is_some()];
+            [&[sign.slope.is_some(), sign.value.is_some()], &relative[..]].concat()
         };
         match self.signs.iter().find(|sign| tests(sign).iter().filter(|&&is| is).count() != 1) {
-            Some(sign) => Err(format!("'{}' needs one of slope, steeper-than, times and value", sign.claim)),
+            Some(sign) => Err(format!("'{}' needs one of slope, steeper-than, times, value and faster", sign.claim)),
             None if self.scenes.is_empty() || self.at.is_empty() => Err("there is nothing to measure".to_owned()),
             None => Ok(()),
         }
+    }
+}
+
+impl SceneSpec {
+    /// The built-in scene, or the file.
+    pub fn source(&self) -> &str {
+        self.file.as_ref().or(self.scene.as_ref()).map_or("", String::as_str)
     }
 }
 

@@ -1,14 +1,14 @@
 //! One point that is to be measured, with all that a measure needs for it.
 
 use crate::Error;
-use crate::bench::{Bench, Reference, Watch, single, solve};
+use crate::bench::{Bench, Watch, single, solve};
+use crate::reference::{Kind, Reference};
 use crate::results::Row;
 use crate::run::Point;
 use crate::spec::{SceneSpec, Series, Spec};
 use isolux_core::form_factors::{self, WAYS, Way};
 use isolux_core::solvers::Solver;
 use isolux_core::solvers::monte_carlo::Settings;
-use isolux_core::solvers::monte_carlo::axes::Walk;
 use isolux_core::{Problem, Solution};
 use std::sync::Arc;
 
@@ -36,12 +36,12 @@ impl<'a> Task<'a> {
         self.bench.problem(self.scene(), self.scene().elements)
     }
 
-    /// The reference for methods of that walk; `None` if somebody has stopped it.
+    /// A reference of its scene; `None` if somebody has stopped it.
     ///
     /// # Errors
     /// Those of [`Bench::reference`].
-    pub fn reference(&mut self, walk: Walk) -> Result<Option<Arc<Reference>>, Error> {
-        self.bench.reference(self.spec, self.scene(), walk, self.watch)
+    pub fn reference(&mut self, kind: Kind) -> Result<Option<Arc<Reference>>, Error> {
+        self.bench.reference(self.spec, self.scene(), kind, self.watch)
     }
 
     /// The method of its series, in one complete solution of `rays` rays.

@@ -6,7 +6,7 @@ use isolux_studies::{Error, Options, Outcome, Progress, STUDIES, Study, run};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-const QUICK: Options = Options { quick: true, seeds: None };
+const QUICK: Options = Options { quick: true, seeds: None, scenes: None };
 
 fn shows_its_robust_signs(name: &str) {
     let folder = tempfile::tempdir().unwrap();
@@ -44,6 +44,7 @@ quick! {
     variance = "variance",
     cost = "cost",
     ray_count = "ray-count",
+    speed = "speed",
 }
 
 /// Runs the study of ray counts until `points` are measured.
@@ -52,7 +53,7 @@ fn stopped_after(points: usize, folder: &Path) -> Outcome {
     let stop = |progress: &Progress| {
         if progress.points_done >= points { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    run(study, Options { quick: true, seeds: Some(2) }, folder, stop).unwrap()
+    run(study, Options { seeds: Some(2), ..QUICK }, folder, stop).unwrap()
 }
 
 #[test]
@@ -76,7 +77,7 @@ fn a_folder_of_another_study_is_left_alone() {
     stopped_after(1, folder.path());
     let before = std::fs::read(folder.path().join("result.csv")).unwrap();
     for (name, quick) in [("order", true), ("ray-count", false)] {
-        let options = Options { quick, seeds: Some(1) };
+        let options = Options { quick, seeds: Some(1), scenes: None };
         let error = run(Study::named(name).unwrap(), options, folder.path(), |_| ControlFlow::Break(())).unwrap_err();
         assert!(matches!(error, Error::OtherRun { .. }), "{error}");
         assert!(error.to_string().contains("choose another folder"), "{error}");

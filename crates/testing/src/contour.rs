@@ -28,6 +28,19 @@ pub fn convex_room_answer<const N: usize>(problem: &Problem) -> Exact {
     (0..N).map(|e| std::array::from_fn(|c| channels[c][e])).collect()
 }
 
+/// The exact irradiances that the `N` elements of a convex room have straight from the lights, `F Be`.
+///
+/// # Panics
+/// If the problem has another number of elements.
+pub fn convex_room_direct<const N: usize>(problem: &Problem) -> Exact {
+    assert_eq!(problem.mesh.len(), N, "the number of elements");
+    let seen = |row: &[f64; N]| {
+        let emission = |j: usize| problem.mesh.emission(j as u32).to_array();
+        (0..N).fold([0.0; 3], |sum, j| std::array::from_fn(|c| sum[c] + row[j] * f64::from(emission(j)[c])))
+    };
+    form_factors::<N>(problem).iter().map(seen).collect()
+}
+
 /// `F[i][j]` between the elements of a convex room.
 pub fn form_factors<const N: usize>(problem: &Problem) -> Vec<[f64; N]> {
     let corners: Vec<_> = problem.mesh.elements().map(|e| element_corners(problem, e)).collect();

@@ -1,6 +1,6 @@
 //! The oracle: every ray against every triangle (Möller & Trumbore 1997, in double precision). Slow and obviously right.
 
-use super::{Corners, Geometry, Hit, HitLists, NONE, Ray};
+use super::{Corners, Facet, Geometry, Hit, HitLists, NONE, Ray};
 use crate::scene::Scene;
 use glam::{DVec3, Vec2, Vec3};
 
@@ -49,6 +49,10 @@ impl Geometry for Brute {
 
     fn surface(&self, triangle: u32, uv: Vec2) -> (Vec3, Vec3) {
         self.corners.surface(triangle, uv)
+    }
+
+    fn facet(&self, triangle: u32) -> Option<Facet> {
+        Some(self.corners.facet(triangle))
     }
 
     fn lift(&self) -> f32 {

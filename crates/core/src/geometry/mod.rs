@@ -64,6 +64,30 @@ impl Hit {
     }
 }
 
+/// A flat triangle in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    /// World position [m] of a corner, and the edges [m] from it.
+    corner: Vec3,
+    edges: [Vec3; 2],
+    /// Unit normal of the front.
+    pub normal: Vec3,
+}
+
+impl Facet {
+    pub fn new([a, b, c]: [Vec3; 3]) -> Facet {
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.as_dvec3().cross(ac.as_dvec3()).normalize_or(glam::DVec3::Z).as_vec3();
+        Facet { corner: a, edges: [ab, ac], normal }
+    }
+
+    /// World position [m] at barycentric coordinates `uv`.
+    #[inline]
+    pub fn at(&self, uv: Vec2) -> Vec3 {
+        self.corner + uv.x * self.edges[0] + uv.y * self.edges[1]
+    }
+}
+
 /// Surfaces that can be traced. Implementations are pure: the same ray has the same hit on every machine and thread.
 pub trait Geometry: Send + Sync {
     /// First hit of every ray, `hits[k]` for `rays[k]`; both slices have the same length. Fastest if neighbouring rays have
@@ -79,6 +103,11 @@ pub trait Geometry: Send + Sync {
 
     /// World position [m] and unit normal of the front at barycentric coordinates `uv` of `triangle`.
     fn surface(&self, triangle: u32, uv: Vec2) -> (Vec3, Vec3);
+
+    /// `triangle`, if it is flat: many points of it cost less than as many calls of [`Geometry::surface`], and are the same.
+    fn facet(&self, _triangle: u32) -> Option<Facet> {
+        None
+    }
 
     /// How far [m] a ray's origin is lifted off the surface it leaves, so that rounding cannot put it behind: a few units
     /// in the last place of the largest coordinate. Coincident faces therefore do not see each other.
@@ -118,9 +147,11 @@ impl Corners {
     }
 
     pub fn surface(&self, triangle: u32, uv: Vec2) -> (Vec3, Vec3) {
-        let [a, b, c] = self.triangles[triangle as usize];
-        let (ab, ac) = (b - a, c - a);
-        let normal = ab.as_dvec3().cross(ac.as_dvec3()).normalize_or(glam::DVec3::Z).as_vec3();
-        (a + uv.x * ab + uv.y * ac, normal)
+        let facet = self.facet(triangle);
+        (facet.at(uv), facet.normal)
+    }
+
+    pub fn facet(&self, triangle: u32) -> Facet {
+        Facet::new(self.triangles[triangle as usize])
     }
 }

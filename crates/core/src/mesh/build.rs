@@ -3,6 +3,7 @@
 use super::average::Averages;
 use super::cut::Cut;
 use super::slices::Slices;
+use super::sparse::SparseColors;
 use super::{ElementMesh, Patch, Resolution, Surface, cells, morton, triangle};
 use crate::Error;
 use crate::scene::Scene;
@@ -33,7 +34,7 @@ impl ElementMesh {
             patches: Vec::with_capacity(cut.divisions.len()),
             patch: Vec::with_capacity(total),
             reflectivity: Vec::with_capacity(total),
-            emission: Vec::with_capacity(total),
+            emission: SparseColors::default(),
         };
         let mut divisions = cut.divisions.iter();
         for (t, &slices) in cut.slices.iter().enumerate() {
@@ -76,15 +77,17 @@ impl ElementMesh {
         if self.is_two_sided(triangle) {
             self.patch.extend_from_within(first..);
             self.reflectivity.extend_from_within(first..);
-            self.emission.extend_from_within(first..);
+            let front = first as u32..first as u32 + cells::count(divisions);
+            front.for_each(|e| self.emission.push(self.emission.get(e)));
         }
     }
 
     fn check_finite(&self) -> Result<(), Error> {
-        for (what, values) in [("reflectivity", &self.reflectivity), ("emission", &self.emission)] {
-            if let Some(e) = values.iter().position(|c| !c.is_finite()) {
-                let value = values[e].to_array().into_iter().find(|v| !v.is_finite()).unwrap_or(f32::NAN);
-                return Err(Error::NotFinite { element: e as u32, what, value });
+        for e in self.elements() {
+            for (what, color) in [("reflectivity", self.reflectivity(e)), ("emission", self.emission(e))] {
+                if let Some(value) = color.to_array().into_iter().find(|v| !v.is_finite()) {
+                    return Err(Error::NotFinite { element: e, what, value });
+                }
             }
         }
         Ok(())

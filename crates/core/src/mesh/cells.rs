@@ -36,6 +36,14 @@ pub fn corners(cell: u32, m: u16) -> [Vec2; 3] {
     grid_corners(cell, m).map(|[i, j]| Vec2::new(i as f32, j as f32) / f32::from(m))
 }
 
+/// Barycentric coordinates of the first corner of `cell`, and the signed length of the edges from it along u and v.
+pub fn frame(cell: u32, m: u16) -> (Vec2, f32) {
+    let (i, j, reversed) = row(cell, u32::from(m));
+    let (beyond, length) = if reversed { (1, -1.0) } else { (0, 1.0) };
+    let m = f32::from(m);
+    (Vec2::new((i + beyond) as f32, (j + beyond) as f32) / m, length / m)
+}
+
 /// Grid coordinates (u m, v m) of the corners of `cell`, in the orientation of the triangle.
 pub fn grid_corners(cell: u32, m: u16) -> [[u32; 2]; 3] {
     let (i, j, reversed) = row(cell, u32::from(m));
@@ -44,16 +52,10 @@ pub fn grid_corners(cell: u32, m: u16) -> [[u32; 2]; 3] {
 
 /// Row, place in the row, and whether the cell is reversed.
 fn row(cell: u32, m: u32) -> (u32, u32, bool) {
-    // Row i starts at i (2m - i), so i = m - sqrt(m² - cell), rounded down; the loops mend the rounding of the root.
-    let first = |i: u32| i * (2 * m - i);
-    let mut i = m - (f64::from(m * m - cell)).sqrt().ceil() as u32;
-    while i > 0 && first(i) > cell {
-        i -= 1;
-    }
-    while i + 1 < m && first(i + 1) <= cell {
-        i += 1;
-    }
-    let k = cell - first(i);
+    // Row i starts at i (2m - i), so m - 1 - i is the root of m² - 1 - cell, rounded down: exact in double precision, for the
+    // number is below 2^32.
+    let i = m - 1 - f64::from(m * m - 1 - cell).sqrt() as u32;
+    let k = cell - i * (2 * m - i);
     (i, k / 2, k % 2 == 1)
 }
 
@@ -67,6 +69,18 @@ mod tests {
             for cell in 0..count(m) {
                 let [a, b, c] = corners(cell, m);
                 assert_eq!(at((a + b + c) / 3.0, m), cell, "m = {m}");
+            }
+        }
+    }
+
+    #[test]
+    fn frames_are_those_of_the_corners() {
+        for m in [1, 2, 7, 255, u16::MAX] {
+            for cell in (0..count(m)).step_by(usize::from(m / 16).max(1).pow(2)).chain([count(m) - 1]) {
+                let (corner, length) = frame(cell, m);
+                let [a, b, c] = corners(cell, m);
+                let close = |p: Vec2, q: Vec2| p.abs_diff_eq(q, 1e-6);
+                assert!(a == corner && close(b, a + length * Vec2::X) && close(c, a + length * Vec2::Y), "{m} {cell}");
             }
         }
     }

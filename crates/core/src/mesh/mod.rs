@@ -11,14 +11,17 @@ mod build;
 pub mod cells;
 mod clip;
 mod cut;
+mod locate;
 mod lookup;
 mod mip;
 mod morton;
 mod resolution;
 mod slices;
+mod sparse;
 mod triangle;
 
 pub use cut::Cut;
+pub use locate::{Point, TOGETHER};
 pub use lookup::Lookup;
 pub use resolution::Resolution;
 
@@ -26,8 +29,9 @@ use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
 use glam::{Vec2, Vec3};
 use slices::Slices;
+use sparse::SparseColors;
 
-/// Elements of all triangles, struct of arrays, 28 bytes an element.
+/// Elements of all triangles, struct of arrays, 16 bytes an element and 12 more if it emits light.
 #[derive(Clone, Debug)]
 pub struct ElementMesh {
     surfaces: Vec<Surface>,
@@ -35,7 +39,7 @@ pub struct ElementMesh {
     /// Patch of every element.
     patch: Vec<u32>,
     reflectivity: Vec<Rgb>,
-    emission: Vec<Rgb>,
+    emission: SparseColors,
 }
 
 /// One triangle.
@@ -95,7 +99,7 @@ impl ElementMesh {
 
     /// Self-emitted exitance `Be` [lm/m²], averaged over the element.
     pub fn emission(&self, e: u32) -> Rgb {
-        self.emission[e as usize]
+        self.emission.get(e)
     }
 
     /// Area [m²].
@@ -177,6 +181,16 @@ impl ElementMesh {
         cells::corners(cell, self.divisions(patch)).map(|uv| self.on_triangle(patch, uv))
     }
 
+    /// Where element `e` lies, and in barycentric coordinates on its triangle: a corner, and the edges from it.
+    pub fn place_and_edges(&self, e: u32) -> (Place, [Vec2; 3]) {
+        let place = self.place(e);
+        let surface = &self.surfaces[place.triangle as usize];
+        let (corner, length) = cells::frame(place.cell, self.divisions(place.patch));
+        let [a, b, c] = surface.slices.corners(place.patch - surface.first_patch);
+        let (along, across) = (b - a, c - a);
+        (place, [a + corner.x * along + corner.y * across, length * along, length * across])
+    }
+
     /// Barycentric coordinates on its triangle of the point of element `e` that belongs to `s` in the unit square;
     /// area preserving.
     pub fn point(&self, e: u32, s: Vec2) -> Vec2 {
@@ -204,7 +218,13 @@ impl ElementMesh {
 
     /// Total area of all elements `A_T` [m²]; a two-sided surface counts twice.
     pub fn total_area(&self) -> f64 {
-        self.elements().map(|e| f64::from(self.area(e))).sum()
+        self.areas().map(|(area, count)| f64::from(area) * f64::from(count)).sum()
+    }
+
+    /// Areas [m²] of all elements, and how many in turn have each.
+    pub fn areas(&self) -> impl Iterator<Item = (f32, u32)> + Clone + '_ {
+        let sides = |patch: &Patch| if self.is_two_sided(patch.triangle) { 2 } else { 1 };
+        self.patches.iter().map(move |patch| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
     }
 
     /// Total emitted flux of the surfaces [lm] per channel.

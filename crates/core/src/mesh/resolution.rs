@@ -6,6 +6,7 @@ use super::triangle::{height, longest_edge, shortest_edge};
 use crate::Error;
 use crate::scene::Scene;
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// How many elements, or how large.
@@ -91,14 +92,17 @@ fn cut(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16) -> Cut {
     Cut { slices, divisions }
 }
 
-/// Number of elements of that cut.
-fn elements(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16) -> u64 {
+/// Number of elements of that cut; a triangle without an edge longer than `edge` is one.
+fn elements(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16 + Sync) -> u64 {
     let of_triangle = |t: u32| {
         let corners = scene.corners(t);
+        if longest_edge(corners) <= edge {
+            return sides(scene, t);
+        }
         let of_side: u64 = patches(corners, slices(corners, edge)).map(|patch| u64::from(of_patch(patch)).pow(2)).sum();
         of_side.saturating_mul(sides(scene, t))
     };
-    (0..scene.triangles.len() as u32).map(of_triangle).fold(0, u64::saturating_add)
+    (0..scene.triangles.len() as u32).into_par_iter().map(of_triangle).reduce(|| 0, u64::saturating_add)
 }
 
 /// Slices as high as the shortest edge, or if that is much less than `edge`, such that each half of one has no edge longer

@@ -5,8 +5,8 @@ use crate::{Problem, Solution};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// Pieces in flight for each thread: enough that nobody waits, few enough that memory stays small.
-const PIECES_PER_THREAD: u64 = 4;
+/// Pieces in flight for each thread: enough that nobody waits for the last of them, few enough that memory stays small.
+const PIECES_PER_THREAD: u64 = 16;
 
 /// Runs `solver` on the current rayon pool until it is done, or until `observe` breaks off, and returns the best
 /// solution it has. `observe` is called many times a second.
@@ -17,6 +17,15 @@ pub fn run(
     problem: &Problem,
     mut observe: impl FnMut(&Progress) -> ControlFlow<()>,
 ) -> Solution {
+    watch(solver, problem, |solver| observe(&solver.progress()))
+}
+
+/// As [`run`], with somebody who sees the solver itself, and may ask it for the best solution so far.
+pub fn watch(
+    solver: &mut dyn Solver,
+    problem: &Problem,
+    mut observe: impl FnMut(&dyn Solver) -> ControlFlow<()>,
+) -> Solution {
     let window = PIECES_PER_THREAD * rayon::current_num_threads() as u64;
     while let Some(pieces) = solver.step() {
         let mut start = pieces.start;
@@ -25,7 +34,7 @@ pub fn run(
             let parts: Vec<Part> = (start..end).into_par_iter().map(|piece| solver.part(problem, piece)).collect();
             parts.into_iter().for_each(|part| solver.absorb(problem, part));
             start = end;
-            if observe(&solver.progress()).is_break() {
+            if observe(solver).is_break() {
                 return solver.solution(problem);
             }
         }

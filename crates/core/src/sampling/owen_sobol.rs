@@ -7,7 +7,7 @@
 //! each set bit of the index and dimension, and one hash for each dimension. 32 dimensions of its own.
 
 use super::construction::base2::DIMENSIONS;
-use super::construction::scramble::scramble;
+use super::construction::scramble::{scramble, scramble_reversed};
 use super::construction::stream_key::StreamKey;
 use super::construction::to_unit;
 use super::sobol::MATRICES;
@@ -20,6 +20,10 @@ pub(super) const ENTRY: Entry = Entry {
     source: "Burley 2020",
     make: |seed| Box::new(OwenSobol::new(seed)),
 };
+
+/// What changes in the first four coordinates, their bits in reverse, from a point to the next, by the trailing ones of its index;
+/// 32 of them end a block.
+static REVERSED_CARRIES: [[u32; 4]; 33] = MATRICES.reversed_carries();
 
 /// Independent scramblings of the same Sobol' sequence, one for each stream.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -36,17 +40,25 @@ impl OwenSobol {
 impl Sequence for OwenSobol {
     fn fill(&self, stream: u64, first: u64, points: &mut [Sample]) {
         let stream_key = derive(self.seed, stream);
+        // Every 2^32 points a new, independent scrambling begins.
+        let mut block = first >> 32;
+        let mut seeds = seeds_of(stream_key, block);
+        let mut reversed: [u32; 4] = std::array::from_fn(|d| sobol(first as u32, d).reverse_bits());
         for (index, point) in (first..).zip(points) {
-            // Every 2^32 points a new, independent scrambling begins.
-            let seeds = seeds(stream_key, index >> 32);
-            *point = std::array::from_fn(|d| to_unit(scramble(sobol(index as u32, d), seeds[d])));
+            if index >> 32 != block {
+                block = index >> 32;
+                seeds = seeds_of(stream_key, block);
+            }
+            *point = std::array::from_fn(|d| to_unit(scramble_reversed(reversed[d], seeds[d])));
+            let carry = &REVERSED_CARRIES[(index as u32).trailing_ones() as usize];
+            (0..4).for_each(|d| reversed[d] ^= carry[d]);
         }
     }
 
     fn number(&self, stream: u64, index: u64, dimension: u32) -> f32 {
         let stream_key = derive(self.seed, stream);
         let (index, d) = StreamKey::new(self.seed, stream).padded(index, dimension, DIMENSIONS);
-        let seed = match seeds(stream_key, index >> 32).get(dimension as usize) {
+        let seed = match seeds_of(stream_key, index >> 32).get(dimension as usize) {
             Some(&seed) => seed,
             None => derive(derive(stream_key, 2 * (index >> 32)), u64::from(dimension)) as u32,
         };
@@ -55,7 +67,7 @@ impl Sequence for OwenSobol {
 }
 
 /// Seeds of the first four dimensions in a block of 2^32 points.
-fn seeds(stream_key: u64, block: u64) -> [u32; 4] {
+fn seeds_of(stream_key: u64, block: u64) -> [u32; 4] {
     let (a, b) = (derive(stream_key, 2 * block), derive(stream_key, 2 * block + 1));
     [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32]
 }

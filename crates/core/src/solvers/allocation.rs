@@ -26,7 +26,9 @@ pub struct Share {
 impl Allocation {
     /// Distributes `rays` over the sources in proportion to their positive weights; `u` in [0, 1).
     pub fn systematic(weights: impl Iterator<Item = (u32, f64)>, total: f64, rays: u64, u: f64) -> Allocation {
-        let mut allocation = Allocation { rays, ..Allocation::default() };
+        let most = (weights.size_hint().1.unwrap_or(0) as u64).min(rays) as usize;
+        let room = || Vec::with_capacity(most);
+        let mut allocation = Allocation { sources: room(), first: room(), rays };
         let (mut cumulated, mut given) = (0.0, 0u64);
         for (source, weight) in weights.filter(|&(_, weight)| weight > 0.0) {
             cumulated += weight;

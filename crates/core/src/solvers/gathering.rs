@@ -5,7 +5,7 @@
 //! Unbiased for the given B. Cost: one ray each.
 
 use super::allocation::Allocation;
-use super::shooting::{BATCH, for_samples, ray_range};
+use super::shooting::{BATCH, NO_SAMPLES, for_samples, ray_range};
 use super::{Landing, Part};
 use crate::Problem;
 use crate::geometry::{Hit, Ray};
@@ -23,43 +23,62 @@ pub struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// Traces the gathering rays of `piece`. `light(i, n, j, spot)` is what a ray adds to element i, of whose n rays it is one,
-    /// when it sees that spot of element j; landings are the sums over the rays of each element in this piece.
-    pub fn gather(&self, piece: u64, light: impl Fn(u32, u32, u32, Spot) -> Rgb) -> Part {
+    /// Traces the gathering rays of `piece`. `look(j)` is what there is to see on element j, and `light(i, n, seen, spot)` what a
+    /// ray adds to element i, of whose n rays it is one, when it sees that spot of it; landings are the sums over the rays of each
+    /// element in this piece.
+    pub fn gather<Seen: Copy>(
+        &self,
+        piece: u64,
+        look: impl Fn(u32) -> Seen,
+        light: impl Fn(u32, u32, Seen, Spot) -> Rgb,
+    ) -> Part {
         let range = ray_range(piece, self.allocation.rays());
         let mut part = Part { rays: range.end - range.start, ..Part::default() };
-        let mut batch = Batch::default();
+        let mut batch =
+            Batch { rays: Vec::new(), receivers: Vec::new(), hits: Vec::new(), met: Vec::new(), seen: Vec::new() };
+        let mut samples = NO_SAMPLES;
         for share in self.allocation.shares(range) {
             let departure = Departure::new(self.problem, share.source, Footprint::WHOLE);
             let first = self.counters.next(share.source) + u64::from(share.before);
-            for_samples(self.sequence, share.source, first, share.count, |sample| {
+            for_samples(self.sequence, share.source, first, share.count, &mut samples, |sample| {
                 batch.rays.push(departure.ray(sample));
                 batch.receivers.push((share.source, share.rays));
                 if batch.rays.len() == BATCH {
-                    batch.look(self.problem, &light, &mut part);
+                    batch.look(self.problem, &look, &light, &mut part);
                 }
             });
         }
-        batch.look(self.problem, &light, &mut part);
+        batch.look(self.problem, &look, &light, &mut part);
         part
     }
 }
 
-/// Rays on their way, and for whom (element, number of its rays).
-#[derive(Default)]
-struct Batch {
+/// Rays on their way, for whom (element, number of its rays), and what they met.
+struct Batch<Seen> {
     rays: Vec<Ray>,
     receivers: Vec<(u32, u32)>,
     hits: Vec<Hit>,
+    met: Vec<Arrival>,
+    seen: Vec<Seen>,
 }
 
-impl Batch {
+impl<Seen: Copy> Batch<Seen> {
     /// Traces the rays, adds what they see to the landings, and empties the batch.
-    fn look(&mut self, problem: &Problem, light: &impl Fn(u32, u32, u32, Spot) -> Rgb, part: &mut Part) {
-        arrivals(problem, &self.rays, &mut self.hits, |k, arrival| {
-            let (element, rays) = self.receivers[k];
+    fn look(
+        &mut self,
+        problem: &Problem,
+        look: &impl Fn(u32) -> Seen,
+        light: &impl Fn(u32, u32, Seen, Spot) -> Rgb,
+        part: &mut Part,
+    ) {
+        self.met.clear();
+        arrivals(problem, &self.rays, &mut self.hits, |_, arrival| self.met.push(arrival));
+        // All look, those too that met nothing, and before anything is done with what they see: so memory answers many at once.
+        self.seen.clear();
+        self.seen.extend(self.met.iter().map(|arrival| look(arrival.element().unwrap_or(0))));
+        for ((&(element, rays), &arrival), &seen) in self.receivers.iter().zip(&self.met).zip(&self.seen) {
             let seen = match arrival {
-                Arrival::Element { element: seen, spot } => light(element, rays, seen, spot),
+                Arrival::Element { spot, .. } => light(element, rays, seen, spot),
                 Arrival::BackFace | Arrival::Escaped => Rgb::BLACK,
             };
             match part.landings.last_mut() {
@@ -68,7 +87,7 @@ impl Batch {
                 }
                 _ => part.landings.push(Landing { element, spot: Spot::default(), light: seen.to_array() }),
             }
-        });
+        }
         self.rays.clear();
         self.receivers.clear();
     }

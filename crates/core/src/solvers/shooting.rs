@@ -13,7 +13,7 @@ use crate::sampling::{Sample, Sequence};
 use crate::transport::{Arrival, Departure, Footprint, arrivals, lamp};
 
 /// Rays of one piece: large enough to hide the cost of handing out work, small enough to share well.
-pub const RAYS_PER_PIECE: u64 = 1 << 14;
+pub const RAYS_PER_PIECE: u64 = 1 << 12;
 /// Rays traced at once; origins within a batch are neighbours.
 pub(super) const BATCH: usize = 512;
 
@@ -58,9 +58,10 @@ impl Sweep<'_> {
         let mut part = Part { rays: range.end - range.start, ..Part::default() };
         part.landings.reserve(part.rays as usize);
         let mut batch = Batch::default();
+        let mut samples = NO_SAMPLES;
         for share in self.allocation.shares(range) {
             let (color, footprint) = ray(share);
-            self.depart(share, footprint, |ray| {
+            self.depart(share, footprint, &mut samples, |ray| {
                 batch.push(ray, color);
                 if batch.rays.len() == BATCH {
                     batch.land(self.problem, luminance, &mut part);
@@ -72,24 +73,34 @@ impl Sweep<'_> {
     }
 
     /// Hands the rays of `share` to `each`.
-    fn depart(&self, share: Share, footprint: Footprint, mut each: impl FnMut(Ray)) {
+    fn depart(&self, share: Share, footprint: Footprint, samples: &mut Samples, mut each: impl FnMut(Ray)) {
         let Share { source, before, count, rays } = share;
         let elements = self.problem.mesh.len() as u32;
         let first = self.counters.next(source) + u64::from(before);
         if source < elements {
             let departure = Departure::new(self.problem, source, footprint.for_lines(rays));
-            for_samples(self.sequence, source, first, count, |sample| each(departure.ray(sample)));
+            for_samples(self.sequence, source, first, count, samples, |sample| each(departure.ray(sample)));
         } else {
             let light = &self.problem.scene.lights[(source - elements) as usize];
             let sphere = self.problem.geometry.bounding_sphere();
-            for_samples(self.sequence, source, first, count, |sample| each(lamp::ray(light, sample, sphere)));
+            for_samples(self.sequence, source, first, count, samples, |sample| each(lamp::ray(light, sample, sphere)));
         }
     }
 }
 
+/// Working memory for sample numbers: most sources need few of them, so it is made once for many.
+pub(super) type Samples = [Sample; 64];
+pub(super) const NO_SAMPLES: Samples = [[0.0; 4]; 64];
+
 /// Hands points `first, first + 1, ...`, `count` of them, of the stream of `source` to `each`.
-pub(super) fn for_samples(sequence: &dyn Sequence, source: u32, first: u64, count: u32, mut each: impl FnMut(Sample)) {
-    let mut samples = [[0.0; 4]; 64];
+pub(super) fn for_samples(
+    sequence: &dyn Sequence,
+    source: u32,
+    first: u64,
+    count: u32,
+    samples: &mut Samples,
+    mut each: impl FnMut(Sample),
+) {
     let mut done = 0;
     while done < count {
         let now = (count - done).min(samples.len() as u32);

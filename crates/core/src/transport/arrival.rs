@@ -3,7 +3,7 @@
 use super::Spot;
 use crate::Problem;
 use crate::geometry::{Hit, Ray};
-use glam::Vec2;
+use crate::mesh::{Point, TOGETHER};
 
 /// What lies at the end of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -17,11 +17,9 @@ pub enum Arrival {
 }
 
 impl Arrival {
-    /// At barycentric coordinates `uv` of `triangle`, on its front or its back.
-    #[inline]
-    pub fn at(problem: &Problem, triangle: u32, uv: Vec2, back: bool) -> Arrival {
-        let element = |(element, uv)| Arrival::Element { element, spot: Spot::at(uv) };
-        problem.mesh.locate(triangle, uv, back).map_or(Arrival::BackFace, element)
+    /// The element, if it is one.
+    pub fn element(self) -> Option<u32> {
+        if let Arrival::Element { element, .. } = self { Some(element) } else { None }
     }
 }
 
@@ -30,8 +28,15 @@ pub fn arrivals(problem: &Problem, rays: &[Ray], hits: &mut Vec<Hit>, mut each: 
     hits.clear();
     hits.resize(rays.len(), Hit::MISS);
     problem.geometry.closest(rays, hits);
-    for (k, hit) in hits.iter().enumerate() {
-        let met = || Arrival::at(problem, hit.triangle, hit.uv, hit.back);
-        each(k, if hit.is_miss() { Arrival::Escaped } else { met() });
+    for (chunk, first) in hits.chunks(TOGETHER).zip((0..).step_by(TOGETHER)) {
+        let point = |k: usize| Point { triangle: chunk[k].triangle, uv: chunk[k].uv, back: chunk[k].back };
+        problem.mesh.locate_together(chunk.len(), point, |k, found| {
+            let arrival = match found {
+                _ if chunk[k].is_miss() => Arrival::Escaped,
+                Some((element, uv)) => Arrival::Element { element, spot: Spot::at(uv) },
+                None => Arrival::BackFace,
+            };
+            each(first + k, arrival);
+        });
     }
 }

@@ -31,6 +31,10 @@ const ANYWHERE: u64 = SPOT_MASK;
 /// Most lines that a spot stands for.
 const LINES_OF_SPOT: u32 = 2;
 
+/// The even and the odd ones of the cells' counts, which then have twice the room.
+const EVEN: u64 = LARGEST * (1 | 1 << 12 | 1 << 24 | 1 << 36 | 1 << 48);
+const ODD: u64 = LARGEST * (1 | 1 << 12 | 1 << 24 | 1 << 36);
+
 /// From where light leaves an element.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Leaving {
@@ -95,9 +99,11 @@ impl Footprint {
             self.halve(noise.rotate_left(32));
         }
         self.counts += 1 << (COUNT_BITS * spot.cell());
-        if mix(noise).is_multiple_of(self.count(spot.cell())) {
-            self.remember(spot.cell(), spot.on_cell());
-        }
+        // As a mask: nobody could guess a branch.
+        let is_remembered = u64::from(below(self.count(spot.cell()), mix(noise)) == 0);
+        let shift = SPOT_BITS * spot.cell();
+        let mask = (is_remembered * SPOT_MASK) << shift;
+        self.spots = self.spots & !mask | spot.on_cell() << shift & mask;
     }
 
     /// Adds the landings of `other`. `noise` is any random number.
@@ -120,7 +126,7 @@ impl Footprint {
         }
         for cell in (0..CELLS).filter(|&cell| other.count(cell) > 0) {
             noise = mix(noise.wrapping_add(1));
-            if noise % (self.count(cell) + other.count(cell)) < other.count(cell) {
+            if below(self.count(cell) + other.count(cell), noise) < other.count(cell) {
                 self.remember(cell, other.remembered(cell));
             }
         }
@@ -129,9 +135,9 @@ impl Footprint {
 
     /// The same for so many `lines` that leave together: if they are too many for the spots, from anywhere on the cells.
     pub fn for_lines(mut self, lines: u32) -> Footprint {
-        let lit = (0..CELLS).filter(|&cell| self.count(cell) > 0).count() as u32;
-        if lines > LINES_OF_SPOT * lit {
-            (0..CELLS).for_each(|cell| self.remember(cell, ANYWHERE));
+        let lit = || (0..CELLS).filter(|&cell| self.count(cell) > 0).count() as u32;
+        if lines > LINES_OF_SPOT && lines > LINES_OF_SPOT * lit() {
+            self.spots = u64::MAX;
         }
         self
     }
@@ -153,22 +159,23 @@ impl Footprint {
         if total == 0 {
             return square_to_triangle(s);
         }
-        let mut left = s.x * total as f32;
-        let mut last = (0, 0.0);
-        for (cell, count) in (0..CELLS).map(|cell| (cell, self.count(cell) as f32)).filter(|&(_, count)| count > 0.0) {
-            last = (cell, (left / count).min(1.0));
-            if left < count {
-                break;
-            }
-            left -= count;
+        let wanted = s.x * total as f32;
+        let landing = (wanted as u64).min(total - 1);
+        // The cell of that landing is the first up to which there are more. No branch, for nobody could guess it.
+        let (mut cell, mut before, mut up_to) = (0, 0, 0);
+        for k in 0..CELLS {
+            up_to += self.count(k);
+            let is_passed = up_to <= landing;
+            cell += u32::from(is_passed);
+            before = if is_passed { up_to } else { before };
         }
-        let (cell, rest) = last;
+        let rest = ((wanted - before as f32) / self.count(cell) as f32).min(1.0);
         let anywhere = square_to_triangle(Vec2::new(rest, s.y));
         let on_cell = match self.remembered(cell) {
             ANYWHERE => anywhere,
-            spot => inside(cells::corners(spot as u32, DIVISIONS[1]), anywhere),
+            spot => inside(cells::frame(spot as u32, DIVISIONS[1]), anywhere),
         };
-        inside(cells::corners(cell, DIVISIONS[0]), on_cell)
+        inside(cells::frame(cell, DIVISIONS[0]), on_cell)
     }
 
     fn density_of_cell(self, cell: u32) -> f32 {
@@ -181,7 +188,9 @@ impl Footprint {
     }
 
     fn total(self) -> u64 {
-        (0..CELLS).map(|cell| self.count(cell)).sum()
+        let pairs = (self.counts & EVEN) + (self.counts >> COUNT_BITS & ODD);
+        // The product's digit of 12 bits at 48 is the sum of all five.
+        pairs.wrapping_mul(1 | 1 << 12 | 1 << 24 | 1 << 36 | 1 << 48) >> 48 & 0xfff
     }
 
     fn remembered(self, cell: u32) -> u64 {
@@ -204,9 +213,14 @@ impl Footprint {
     }
 }
 
-/// The point with barycentric coordinates `uv` on a triangle.
-fn inside([a, b, c]: [Vec2; 3], uv: Vec2) -> Vec2 {
-    a + uv.x * (b - a) + uv.y * (c - a)
+/// The point with barycentric coordinates `uv` in a cell with that frame.
+fn inside((corner, length): (Vec2, f32), uv: Vec2) -> Vec2 {
+    corner + length * uv
+}
+
+/// A whole number below `limit`, of at most 32 bits, each as likely as the others if `noise` is random.
+fn below(limit: u64, noise: u64) -> u64 {
+    ((noise >> 32) * limit) >> 32
 }
 
 #[cfg(test)]
@@ -301,6 +315,17 @@ mod tests {
             footprint.add(Spot::at(uv), 0);
             assert!(footprint.point(Vec2::splat(0.5)).distance(uv) < 2.0 / 33.0, "{uv}");
         }
+    }
+
+    #[test]
+    fn totals_are_the_sums_of_the_counts() {
+        for seed in 0..100 {
+            let mut footprint = lopsided(seed * seed, seed);
+            (0..seed).for_each(|k| footprint.add(corner_of((mix(k) % 9) as u16), mix(seed + k)));
+            assert_eq!(footprint.total(), (0..CELLS).map(|cell| footprint.count(cell)).sum::<u64>());
+        }
+        let full = Footprint { counts: u64::MAX, spots: 0 };
+        assert_eq!(full.total(), 9 * LARGEST);
     }
 
     #[test]

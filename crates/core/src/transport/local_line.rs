@@ -4,9 +4,10 @@
 
 use super::Footprint;
 use crate::Problem;
-use crate::geometry::Ray;
+use crate::geometry::{Facet, Ray};
 use crate::math::Frame;
 use crate::math::warp::square_to_cosine_hemisphere;
+use crate::mesh::Place;
 use crate::sampling::Sample;
 use glam::{Vec2, Vec3};
 
@@ -16,10 +17,14 @@ pub struct Departure<'a> {
     problem: &'a Problem,
     triangle: u32,
     back: bool,
-    /// Barycentric coordinates of one corner, and the edges from it.
+    /// Barycentric coordinates on the triangle of one corner, and the edges from it.
     corner: Vec2,
     edges: [Vec2; 2],
     footprint: Footprint,
+    /// Distance [m] by which origins are lifted off the surface.
+    lift: f32,
+    /// The triangle in space, and the frame about the side's normal, if they are the same for all lines.
+    flat: Option<(Facet, Frame)>,
 }
 
 /// A point of an element, lifted off it.
@@ -41,23 +46,38 @@ impl Start {
 impl<'a> Departure<'a> {
     /// Lines from the part of `element` that `footprint` covers.
     pub fn new(problem: &'a Problem, element: u32, footprint: Footprint) -> Departure<'a> {
-        let place = problem.mesh.place(element);
-        let [a, b, c] = problem.mesh.corners(element);
-        Departure { problem, triangle: place.triangle, back: place.back, corner: a, edges: [b - a, c - a], footprint }
+        let (Place { triangle, back, .. }, [corner, along, across]) = problem.mesh.place_and_edges(element);
+        let flat = problem.geometry.facet(triangle).map(|facet| (facet, frame(facet.normal, back)));
+        let lift = problem.geometry.lift();
+        Departure { problem, triangle, back, corner, edges: [along, across], footprint, lift, flat }
     }
 
     /// The local line that belongs to `sample`: its first two numbers choose the point, the others the direction.
     pub fn ray(&self, [x1, x2, x3, x4]: Sample) -> Ray {
-        let start = self.start(self.footprint.point(Vec2::new(x1, x2)));
-        let direction = Frame::about(start.normal).to_world(square_to_cosine_hemisphere(Vec2::new(x3, x4)));
-        start.ray(direction)
+        let (start, frame) = self.start_and_frame(self.footprint.point(Vec2::new(x1, x2)));
+        start.ray(frame.to_world(square_to_cosine_hemisphere(Vec2::new(x3, x4))))
     }
 
     /// Where lines start at barycentric coordinates `uv` of the element.
     pub fn start(&self, uv: Vec2) -> Start {
-        let uv = self.corner + uv.x * self.edges[0] + uv.y * self.edges[1];
-        let (point, front) = self.problem.geometry.surface(self.triangle, uv);
-        let normal = if self.back { -front } else { front };
-        Start { origin: point + normal * self.problem.geometry.lift(), normal, triangle: self.triangle }
+        self.start_and_frame(uv).0
     }
+
+    fn start_and_frame(&self, uv: Vec2) -> (Start, Frame) {
+        let uv = self.corner + uv.x * self.edges[0] + uv.y * self.edges[1];
+        let (point, frame) = match self.flat {
+            Some((facet, frame)) => (facet.at(uv), frame),
+            None => {
+                let (point, front) = self.problem.geometry.surface(self.triangle, uv);
+                (point, frame(front, self.back))
+            }
+        };
+        let normal = frame.z;
+        (Start { origin: point + normal * self.lift, normal, triangle: self.triangle }, frame)
+    }
+}
+
+/// The frame about the normal of a side, `front` being that of the triangle's front.
+fn frame(front: Vec3, back: bool) -> Frame {
+    Frame::about(if back { -front } else { front })
 }

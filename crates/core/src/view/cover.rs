@@ -4,7 +4,8 @@
 //! that lies half under a cupboard has half the irradiance of its neighbours, and one wholly under it has none, but nobody
 //! can see the covered half. Left alone, its darkness would be interpolated into the floor before the cupboard. So some
 //! points of each element that is darker than its neighbours look around: a point that sees nothing but darkness is
-//! covered. An element's flux then belongs to its open share alone.
+//! covered. An element's flux then belongs to its open share alone. Elements that the error bars cannot tell from their
+//! neighbours are left alone: in the noise of the first seconds they would be most of all.
 
 use super::plastic;
 use super::vertices::Vertices;
@@ -12,6 +13,7 @@ use crate::geometry::{Hit, Ray};
 use crate::math::Frame;
 use crate::math::warp::square_to_cosine_hemisphere;
 use crate::scene::LightKind;
+use crate::solution::luminance_error;
 use crate::{Problem, Solution};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -22,19 +24,27 @@ const POINTS: u32 = 16;
 const LOOKS: u32 = 6;
 /// Elements darker than this share of the brightest neighbour may be covered.
 const DARKER: f32 = 0.85;
+/// Differences within this many combined standard errors may be noise.
+const SIGNIFICANT: f32 = 2.0;
 /// What has less than this share of the brightest neighbour's light is darkness.
 const DARKNESS: f32 = 0.02;
 
 /// Open share of every element, in [0, 1].
 pub fn open_shares(problem: &Problem, solution: &Solution, vertices: &Vertices) -> Vec<f32> {
     let light = |e: u32| solution.irradiance[e as usize].luminance();
-    let brightest_at = |v: u32| vertices.touching(v).iter().map(|&e| light(e)).fold(0.0, f32::max);
-    let brightest: Vec<f32> = (0..vertices.len() as u32).into_par_iter().map(brightest_at).collect();
+    // An error that is not known counts as none.
+    let error = |e: u32| luminance_error(solution.std_error[e as usize]).max(0.0);
+    let brighter = |a: u32, b: u32| if light(b) > light(a) { b } else { a };
+    let brightest_at = |v: u32| vertices.touching(v).iter().copied().reduce(brighter);
+    let brightest: Vec<Option<u32>> = (0..vertices.len() as u32).into_par_iter().map(brightest_at).collect();
     let share = |e: u32| {
-        let around = vertices.of_element(problem, e).map(|v| brightest[v as usize]).into_iter().fold(0.0, f32::max);
-        let dimming = light(e) / around;
+        let neighbour =
+            vertices.of_element(problem, e).into_iter().filter_map(|v| brightest[v as usize]).fold(e, brighter);
+        let around = light(neighbour);
+        let noise = SIGNIFICANT * error(e).hypot(DARKER * error(neighbour));
         // An open part brighter than all its neighbours would be a miscount of the points.
-        if dimming < DARKER { open_share(problem, solution, e, around).max(dimming) } else { 1.0 }
+        let open_share = || open_share(problem, solution, e, around).max(light(e) / around);
+        if light(e) + noise < DARKER * around { open_share() } else { 1.0 }
     };
     (0..problem.mesh.len() as u32).into_par_iter().map(share).collect()
 }

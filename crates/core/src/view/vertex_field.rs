@@ -29,13 +29,26 @@ impl VertexField {
         let vertices = Vertices::new(problem);
         let open = cover::open_shares(problem, solution, &vertices);
         let values = smooth::smooth(problem, solution, &vertices, &open);
-        let weight = |e: u32| problem.mesh.area(e) * open[e as usize];
-        let mean = |v: u32| vertex_mean(vertices.touching(v), &values, weight);
-        let mut irradiance: Vec<Rgb> = (0..vertices.len() as u32).into_par_iter().map(mean).collect();
-        for seam in seams::t_vertices(problem, &vertices) {
-            let (from, to) = (irradiance[seam.from as usize], irradiance[seam.to as usize]);
-            irradiance[seam.vertex as usize] = from + (to - from) * seam.t;
+        let mut field = VertexField::of_values(problem, vertices, &values, &open);
+        for seam in seams::t_vertices(problem, &field.vertices) {
+            let (from, to) = (field.irradiance(seam.from), field.irradiance(seam.to));
+            field.irradiance[seam.vertex as usize] = from + (to - from) * seam.t;
         }
+        field
+    }
+
+    /// A first look at a solution that is still being computed: means at the vertices, no noise taken out and no seam closed. On
+    /// the vertices of `earlier`, a field of the same problem, if there is one.
+    pub fn draft(problem: &Problem, solution: &Solution, earlier: Option<VertexField>) -> VertexField {
+        let vertices = earlier.map_or_else(|| Vertices::new(problem), |field| field.vertices);
+        VertexField::of_values(problem, vertices, &solution.irradiance, &vec![1.0; problem.mesh.len()])
+    }
+
+    /// Means at the vertices of `values` [lux] of the elements, of whose areas the shares `open` count.
+    fn of_values(problem: &Problem, vertices: Vertices, values: &[Rgb], open: &[f32]) -> VertexField {
+        let weight = |e: u32| problem.mesh.area(e) * open[e as usize];
+        let mean = |v: u32| vertex_mean(vertices.touching(v), values, weight);
+        let irradiance = (0..vertices.len() as u32).into_par_iter().map(mean).collect();
         VertexField { vertices, irradiance }
     }
 
@@ -177,6 +190,21 @@ mod tests {
             let p = problem.geometry.surface(0, uv).0;
             assert!((field.irradiance_at(&problem, 0, uv, false).g - (10.0 + 3.0 * p.x - p.y)).abs() < 1e-3);
         }
+    }
+
+    #[test]
+    fn a_draft_of_light_without_noise_is_the_field_whoever_had_its_vertices_before() {
+        let (problem, field) = field(square(), &[7, 7], |p| 10.0 + p.x);
+        let dark = solution(vec![Rgb::BLACK; problem.mesh.len()]);
+        let mean = |e: u32| {
+            let at = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
+            Rgb::grey(10.0 + problem.geometry.surface(problem.mesh.triangle(e), at).0.x)
+        };
+        let light = solution(problem.mesh.elements().map(mean).collect());
+        let draft = VertexField::draft(&problem, &light, Some(VertexField::draft(&problem, &dark, None)));
+        assert!(
+            field.len() == draft.len() && (0..field.len() as u32).all(|v| field.irradiance(v) == draft.irradiance(v))
+        );
     }
 
     #[test]

@@ -16,7 +16,7 @@ mod vtu;
 use crate::{Error, solution_file};
 use isolux_core::view::VertexField;
 use isolux_core::{Problem, Solution};
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 use std::path::Path;
 
 /// One format a solution can be written in.
@@ -35,16 +35,31 @@ pub struct LitScene<'a> {
     pub problem: &'a Problem,
     pub solution: &'a Solution,
     field: OnceCell<VertexField>,
+    /// Of a draft; with the field of an earlier one, until the own is there.
+    draft: Option<RefCell<Option<VertexField>>>,
 }
 
 impl<'a> LitScene<'a> {
     pub fn new(problem: &'a Problem, solution: &'a Solution) -> LitScene<'a> {
-        LitScene { problem, solution, field: OnceCell::new() }
+        LitScene { problem, solution, field: OnceCell::new(), draft: None }
+    }
+
+    /// A solution that is still being computed, as [`VertexField::draft`] shows it, on the vertices of an `earlier` field.
+    pub fn draft(problem: &'a Problem, solution: &'a Solution, earlier: Option<VertexField>) -> LitScene<'a> {
+        LitScene { draft: Some(RefCell::new(earlier)), ..LitScene::new(problem, solution) }
     }
 
     /// The light as it is looked at.
     pub fn field(&self) -> &VertexField {
-        self.field.get_or_init(|| VertexField::new(self.problem, self.solution))
+        self.field.get_or_init(|| match &self.draft {
+            Some(earlier) => VertexField::draft(self.problem, self.solution, earlier.take()),
+            None => VertexField::new(self.problem, self.solution),
+        })
+    }
+
+    /// The field, if anybody has asked for it; that of the earlier draft, if nobody has.
+    pub fn into_field(self) -> Option<VertexField> {
+        self.field.into_inner().or_else(|| self.draft.and_then(RefCell::into_inner))
     }
 }
 

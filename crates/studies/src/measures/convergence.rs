@@ -5,6 +5,7 @@
 
 use super::Measure;
 use crate::Error;
+use crate::reference::Kind;
 use crate::results::Row;
 use crate::task::Task;
 use isolux_core::solvers::monte_carlo::MonteCarlo;
@@ -19,7 +20,7 @@ impl Measure for Convergence {
 
     fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<Row>>, Error> {
         let settings = task.single(task.point.at as u64)?;
-        let Some(reference) = task.reference(settings.method.walk)? else { return Ok(None) };
+        let Some(reference) = task.reference(Kind::Of(settings.method.walk))? else { return Ok(None) };
         let problem = task.problem()?;
         let mut solver = MonteCarlo::new(&problem, settings)?;
         let start = Instant::now();

@@ -6,6 +6,7 @@ mod cost;
 mod element_variance;
 mod form_factor_variance;
 mod ray_count;
+mod speed;
 mod warm_up;
 
 use crate::Error;
@@ -40,6 +41,7 @@ pub const MEASURES: &[(&str, Make)] = &[
     ("element-variance", || Box::new(element_variance::ElementVariance::default())),
     ("cost", || Box::new(cost::Cost)),
     ("ray-count", || Box::new(ray_count::RayCount)),
+    ("speed", || Box::new(speed::Speed)),
 ];
 
 /// The measure called `name`.

@@ -7,6 +7,7 @@
 use super::Measure;
 use crate::Error;
 use crate::bench::Drive;
+use crate::reference::Kind;
 use crate::results::Row;
 use crate::task::Task;
 use isolux_core::solvers::{MonteCarlo, Solver};
@@ -28,7 +29,7 @@ impl Measure for WarmUp {
 
     fn measure(&mut self, task: &mut Task) -> Result<Option<Vec<Row>>, Error> {
         let settings = task.single(task.point.at as u64)?;
-        let Some(reference) = task.reference(settings.method.walk)? else { return Ok(None) };
+        let Some(reference) = task.reference(Kind::Of(settings.method.walk))? else { return Ok(None) };
         let problem = task.problem()?;
         let mut solver = MonteCarlo::new(&problem, settings)?;
         let exact = reflected(&problem, |e| reference.on(e));

@@ -35,7 +35,7 @@ mod split;
 mod tests;
 mod traverse;
 
-use super::{Corners, Geometry, Hit, HitLists, Ray};
+use super::{Corners, Facet, Geometry, Hit, HitLists, Ray};
 use crate::scene::Scene;
 use glam::{Vec2, Vec3};
 use node::Tree;
@@ -116,6 +116,10 @@ impl Geometry for Bvh {
 
     fn surface(&self, triangle: u32, uv: Vec2) -> (Vec3, Vec3) {
         self.corners.surface(triangle, uv)
+    }
+
+    fn facet(&self, triangle: u32) -> Option<Facet> {
+        Some(self.corners.facet(triangle))
     }
 
     fn lift(&self) -> f32 {

@@ -41,6 +41,23 @@ impl Matrices {
         Matrices { columns, carries }
     }
 
+    /// For the first four dimensions: the sum of columns 0 to k, each fraction with its bits in reverse; and for k = 32, where 32
+    /// bits of an index are all ones, the sum of columns 0 to 31, which leads back to point 0.
+    pub const fn reversed_carries(&self) -> [[u32; 4]; 33] {
+        let mut reversed = [[0; 4]; 33];
+        let mut k = 0;
+        while k < 33 {
+            let column = if k < 32 { k } else { 31 };
+            let mut d = 0;
+            while d < 4 {
+                reversed[k][d] = self.carries[column][d].reverse_bits();
+                d += 1;
+            }
+            k += 1;
+        }
+        reversed
+    }
+
     /// Coordinate `d` of point `index` before any randomisation, as a 32-bit fraction.
     pub fn fraction(&self, index: u64, d: usize) -> u32 {
         let (mut bits, mut x) = (index, 0);

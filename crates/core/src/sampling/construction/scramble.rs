@@ -3,7 +3,12 @@
 
 /// Owen's nested uniform scrambling of a 32-bit fraction: each bit is flipped by a hash of the bits above it.
 pub fn scramble(x: u32, seed: u32) -> u32 {
-    let mut x = x.reverse_bits();
+    scramble_reversed(x.reverse_bits(), seed)
+}
+
+/// The same of a fraction whose bits come in reverse.
+#[inline]
+pub fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul((seed >> 16) | 1);

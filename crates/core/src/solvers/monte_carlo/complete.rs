@@ -31,6 +31,9 @@ pub trait CompleteSolution: Debug + Send + Sync {
 
     fn balance(&self) -> Balance;
 
+    /// Gives the memory of the elements back, when the last complete solution is done and its irradiance has been taken.
+    fn retire(&mut self) {}
+
     /// What it teaches the next one.
     fn experience(&self) -> Experience;
 

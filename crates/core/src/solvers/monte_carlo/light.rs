@@ -2,12 +2,12 @@
 //!
 //! Light is kept as flux [lm], in parts that converge differently and are merged with gathered light separately.
 
-use super::to_rgb;
+use super::{LightPart, to_rgb};
 use crate::math::Rgb;
 use crate::math::hash::mix;
 use crate::mesh::ElementMesh;
 use crate::solvers::Part;
-use crate::transport::{Footprint, Leaving, Spot};
+use crate::transport::{Footprint, Leaving};
 
 /// Where light on an element comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,12 +27,13 @@ pub struct Landed {
     pub reflected: f64,
 }
 
-/// Flux on every element, 92 bytes each (104 in a scene with lights without extent).
+/// Flux on every element, 96 bytes each (108 in a scene with lights without extent).
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Light {
     lamps: Vec<Rgb>,
     pub direct: Vec<Rgb>,
     pub indirect: Vec<Rgb>,
+    /// What waits to be shot; while elements gather, the radiosity [lm/m²] they see (see [`Light::show`]).
     unshot: Vec<Rgb>,
     /// The elements that have unshot flux, in order.
     active: Vec<u32>,
@@ -56,7 +57,7 @@ impl Light {
             direct: dark(),
             indirect: dark(),
             unshot: dark(),
-            active: Vec::new(),
+            active: Vec::with_capacity(elements),
             landed: vec![[0.0; 3]; elements],
             footprint: vec![Footprint::WHOLE; tracked],
             fresh: vec![Footprint::WHOLE; tracked],
@@ -91,6 +92,14 @@ impl Light {
         self.shot_first(e) + self.indirect[e as usize]
     }
 
+    /// That part of the flux [lm] on element `e`.
+    pub fn part_on(&self, part: LightPart, e: u32) -> Rgb {
+        match part {
+            LightPart::All => self.on(e),
+            LightPart::Indirect => self.indirect[e as usize],
+        }
+    }
+
     /// Radiosity [lm/m²] that element `e` reflects.
     pub fn reflected_radiosity(&self, mesh: &ElementMesh, e: u32) -> Rgb {
         mesh.reflectivity(e) * self.on(e) / mesh.area(e)
@@ -101,9 +110,19 @@ impl Light {
         self.footprint.get(e as usize).copied().unwrap_or(Footprint::WHOLE)
     }
 
-    /// Radiosity [lm/m²] that a line sees which meets `spot` of element `e`.
-    pub fn seen_radiosity(&self, mesh: &ElementMesh, e: u32, spot: Spot) -> Rgb {
-        self.reflected_radiosity(mesh, e) * self.footprint(e).density(spot)
+    /// Shows the reflected radiosity of all elements to those that gather. What has not been shot is given up: its memory is
+    /// used.
+    pub fn show(&mut self, mesh: &ElementMesh) {
+        self.active.clear();
+        for e in mesh.elements() {
+            self.unshot[e as usize] = self.reflected_radiosity(mesh, e);
+        }
+    }
+
+    /// Reflected radiosity [lm/m²] of element `e`, as it was when it was shown.
+    #[inline]
+    pub fn shown(&self, e: u32) -> Rgb {
+        self.unshot[e as usize]
     }
 
     /// Flux [lm] that element `e` has yet to shoot.
@@ -225,15 +244,16 @@ impl Light {
 
     /// Finds the elements that have unshot flux.
     pub fn find_active(&mut self) {
-        self.active = (0..self.unshot.len() as u32).filter(|&e| !self.unshot[e as usize].is_black()).collect();
+        self.active.clear();
+        self.active.extend((0..self.unshot.len() as u32).filter(|&e| !self.unshot[e as usize].is_black()));
     }
 
-    /// Merges `gathered` light [lm] on element `e` into what was shot, with these weights of direct and indirect light.
+    /// Merges `gathered` light [lm] on element `e` into what was shot, with these weights of direct and indirect light. All of it
+    /// counts as indirect, as it is if the weight of direct light is 0.
     pub fn merge(&mut self, e: u32, gathered: Rgb, [direct, indirect]: [f32; 2]) {
         let k = e as usize;
-        let shot = self.direct[k] * (1.0 - direct) + self.indirect[k] * (1.0 - indirect);
-        self.direct[k] = Rgb::BLACK;
-        self.indirect[k] = shot + gathered;
+        self.direct[k] = self.direct[k] * (1.0 - direct);
+        self.indirect[k] = self.indirect[k] * (1.0 - indirect) + gathered;
     }
 
     /// Merges an estimate of the flux [lm] on element `e` straight from all lights with what they have shot, with this weight; returns

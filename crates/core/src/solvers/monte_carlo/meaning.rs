@@ -1,7 +1,7 @@
 //! Which combinations of the axes have a meaning. What has none with a certain order, the order refuses itself.
 
-use super::Method;
 use super::axes::{Direction, Estimator, FirstShot, Lines, Survival, Walk};
+use super::{LightPart, Method};
 use crate::Error;
 use crate::sampling::address::Address;
 use crate::scene::Scene;
@@ -85,6 +85,18 @@ impl Method {
         }
     }
 
+    /// Refuses a part of the light that the method cannot tell from the rest.
+    ///
+    /// # Errors
+    /// [`Error::Meaningless`].
+    pub fn check_light(&self, light: LightPart) -> Result<(), Error> {
+        if light == LightPart::Indirect && !(self.order.entry().tells_light_apart)(self) {
+            let what = "direct and reflected light are added up as they land, and cannot be told apart afterwards";
+            return Err(Error::Meaningless { what, nearest: "--method stochastic-jacobi" });
+        }
+        Ok(())
+    }
+
     /// Refuses what has no meaning in `scene`.
     ///
     /// # Errors
@@ -113,6 +125,20 @@ mod tests {
             assert_eq!(named.method.address, named.method.natural_address(), "{}", named.name);
             assert_eq!(named.method.name(), named.name);
         }
+    }
+
+    #[test]
+    fn whoever_adds_all_light_up_is_not_asked_for_a_part_of_it() {
+        let refused: Vec<_> =
+            METHODS.iter().filter(|named| named.method.check_light(LightPart::Indirect).is_err()).collect();
+        let names: Vec<_> = refused.iter().map(|named| named.name).collect();
+        assert_eq!(names, ["wdrs", "particle-tracing", "random-walk", "keller"]);
+        let multipath = Method::named("multipath").unwrap();
+        let same = Method { first_shot: FirstShot::Same, ..multipath };
+        assert_eq!(multipath.check_light(LightPart::Indirect), Ok(()));
+        let text = same.check_light(LightPart::Indirect).unwrap_err().to_string();
+        assert!(text.contains("cannot be told apart") && text.contains("nearest is --method"), "{text}");
+        assert!(METHODS.iter().all(|named| named.method.check_light(LightPart::All).is_ok()));
     }
 
     #[test]

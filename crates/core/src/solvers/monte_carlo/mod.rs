@@ -20,7 +20,7 @@ mod sources;
 mod walks;
 
 pub use method::{METHODS, Method, NamedMethod};
-pub use settings::{Budget, Settings};
+pub use settings::{Budget, LightPart, Settings};
 
 use self::complete::CompleteSolution;
 use self::experience::Experience;
@@ -65,6 +65,7 @@ impl MonteCarlo {
     /// [`Error::Meaningless`] for a method that has no meaning, here or at all; [`Error::Parameter`] for 0 or 2 to 7 replicates, or fewer rays than replicates.
     pub fn new(problem: &Problem, settings: Settings) -> Result<MonteCarlo, Error> {
         settings.method.check()?;
+        settings.method.check_light(settings.light)?;
         settings.method.check_scene(&problem.scene)?;
         let parameter = |name, value: u64, allowed| Err(Error::Parameter { name, value: value.to_string(), allowed });
         if settings.replicates != 1 && settings.replicates < 8 {
@@ -128,7 +129,7 @@ impl MonteCarlo {
             }));
         }
         if self.is_finished() {
-            return;
+            return self.complete.retire();
         }
         if self.settings.budget == Budget::Endless && self.replicates.count_in_round() == self.replicates_in_round {
             self.replicates.close_round();
@@ -149,6 +150,7 @@ impl MonteCarlo {
         if self.settings.method.has_leaving() {
             parameters.push(("leaving".to_owned(), self.settings.leaving.name().to_owned()));
         }
+        parameters.push(("light".to_owned(), self.settings.light.name().to_owned()));
         parameters.extend(self.settings.method.parameters());
         Provenance {
             scene: problem.scene.name.clone(),
@@ -179,10 +181,10 @@ impl Solver for MonteCarlo {
     }
 
     fn solution(&self, problem: &Problem) -> Solution {
-        let unfinished = self.replicates.count() == 0;
+        let (unfinished, dark) = (self.replicates.count() == 0, self.is_dark());
         let mean = |e| if unfinished { self.complete.irradiance(problem, e) } else { self.replicates.estimate(e).0 };
         let std_error = |e| match unfinished {
-            _ if self.is_dark() => Rgb::BLACK,
+            _ if dark => Rgb::BLACK,
             true => Rgb::grey(f32::NAN),
             false => self.replicates.estimate(e).1.map(f32::sqrt),
         };

@@ -13,6 +13,29 @@ pub struct Settings {
     pub replicates: u32,
     /// From where pooled light leaves an element.
     pub leaving: Leaving,
+    /// What the estimate holds. The balance is always that of all light.
+    pub light: LightPart,
+}
+
+/// Which light on an element is wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum LightPart {
+    /// All that falls on it.
+    #[default]
+    All,
+    /// What was reflected at least once, for those who compute direct light by themselves.
+    Indirect,
+}
+
+impl LightPart {
+    pub const ALL: [LightPart; 2] = [LightPart::All, LightPart::Indirect];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            LightPart::All => "all",
+            LightPart::Indirect => "indirect",
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -33,6 +56,7 @@ impl Default for Settings {
             budget: Budget::Heuristic,
             replicates: 16,
             leaving: Leaving::default(),
+            light: LightPart::default(),
         }
     }
 }

@@ -22,6 +22,8 @@ pub(super) const ENTRY: Entry = Entry {
     source: "Pattanaik & Mudur 1992; Sbert et al. 1996",
     pools: |lines| lines != Lines::Local,
     natural_address,
+    // Multipath does so if the first shot is apart; a walk scores all its visits together.
+    tells_light_apart: |method| method.lines != Lines::Local && method.first_shot == FirstShot::Local,
     check,
     make: |problem, settings| match settings.method.lines {
         Lines::Local => Box::new(Walks::new(problem, settings.method)),

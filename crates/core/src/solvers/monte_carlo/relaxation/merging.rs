@@ -63,6 +63,11 @@ impl Merging {
         }
     }
 
+    /// Where direct light is of no interest: nothing of it is gathered.
+    pub fn of_indirect_light(self) -> Merging {
+        Merging { direct: Variances::default(), ..self }
+    }
+
     /// Weights of gathering for direct and indirect light.
     pub fn weights(&self, area: f32, n: u32) -> [f32; 2] {
         [self.direct.weight(area, n), self.indirect.weight(area, n)]
@@ -80,16 +85,16 @@ impl Merging {
             let equal = problem.mesh.elements().map(|e| (e, 1.0));
             return Allocation::systematic(equal, problem.mesh.len() as f64, rays, u);
         }
-        let area = |e| f64::from(problem.mesh.area(e));
-        let wanted = |limit: f64| problem.mesh.elements().map(|e| (limit - area(e)).max(0.0)).sum::<f64>();
+        let areas = problem.mesh.areas().map(|(area, count)| (f64::from(area), f64::from(count)));
+        let wanted = |limit: f64| areas.clone().map(|(area, count)| count * (limit - area).max(0.0)).sum::<f64>();
         let target = rays as f64 * shooting / gathering;
-        let largest = problem.mesh.elements().map(area).fold(0.0, f64::max);
+        let largest = areas.clone().map(|(area, _)| area).fold(0.0, f64::max);
         let (mut low, mut high) = (0.0, largest + target / problem.mesh.len() as f64);
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
             if wanted(middle) > target { high = middle } else { low = middle }
         }
-        let weights = problem.mesh.elements().map(|e| (e, (high - area(e)).max(0.0)));
+        let weights = problem.mesh.elements().map(|e| (e, (high - f64::from(problem.mesh.area(e))).max(0.0)));
         Allocation::systematic(weights, wanted(high), rays, u)
     }
 }

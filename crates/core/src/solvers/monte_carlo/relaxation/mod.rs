@@ -25,7 +25,7 @@ use self::sweeps::Sweeps;
 use super::axes::FirstShot;
 use super::complete::CompleteSolution;
 use super::light::Light;
-use super::{Experience, Method, Settings, sources};
+use super::{Experience, LightPart, Method, Settings, sources};
 use crate::Problem;
 use crate::math::Rgb;
 use crate::math::hash::{derive, unit_f64};
@@ -53,6 +53,8 @@ pub struct Relaxation {
     draw: Draw,
     counters: Counters,
     light: Light,
+    /// What of it is wanted.
+    wanted: LightPart,
     /// Luminous flux [lm] that the running step shoots.
     shot: f64,
     /// Flux [lm] that the running step has lost: into the open, and to the backs of one-sided surfaces.
@@ -90,6 +92,7 @@ impl Relaxation {
             draw: Draw::Local(Allocation::default()),
             counters: method.address.counters(sources::count(problem)),
             light: Light::new(problem.mesh.len(), !problem.scene.lights.is_empty(), leaving),
+            wanted: settings.light,
             shot: 0.0,
             lost: [0.0; 2],
             adrift: 0.0,
@@ -140,7 +143,9 @@ impl Relaxation {
         let u = unit_f64(derive(self.seed, self.step));
         self.step += 1;
         self.draw = if stage == Stage::Gathering {
-            self.merging = Merging::expect(problem, &self.light, self.emission_ray_flux, self.reflected_ray_flux());
+            let expected = Merging::expect(problem, &self.light, self.emission_ray_flux, self.reflected_ray_flux());
+            self.merging = if self.wanted == LightPart::Indirect { expected.of_indirect_light() } else { expected };
+            self.light.show(&problem.mesh);
             Draw::Local(self.merging.allocate(problem, rays, u))
         } else if self.uses_global_lines(stage) {
             self.light.expect(u64::MAX);
@@ -179,7 +184,8 @@ impl Relaxation {
         }
         self.place += 1;
         self.begin_stage(problem, experience);
-        if self.stage().is_none() && self.sweeps.close(&self.light, self.balance, self.rays_done) {
+        let flux = |e| self.light.part_on(self.wanted, e);
+        if self.stage().is_none() && self.sweeps.close(flux, self.balance, self.rays_done) {
             self.start_sweep(problem, experience);
         }
     }
@@ -224,7 +230,12 @@ impl CompleteSolution for Relaxation {
     }
 
     fn irradiance(&self, problem: &Problem, e: u32) -> Rgb {
-        self.sweeps.flux(e, self.light.on(e), self.stage().is_none()) / problem.mesh.area(e)
+        self.sweeps.flux(e, self.light.part_on(self.wanted, e), self.stage().is_none()) / problem.mesh.area(e)
+    }
+
+    fn retire(&mut self) {
+        self.light = Light::new(0, false, Leaving::WholeElement);
+        self.draw = Draw::Local(Allocation::default());
     }
 
     fn rays(&self) -> u64 {

@@ -74,10 +74,10 @@ impl Relaxation {
 
     fn gather(&self, problem: &Problem, allocation: &Allocation, sequence: &dyn Sequence, piece: u64) -> Part {
         let sweep = gathering::Sweep { problem, sequence, counters: &self.counters, allocation };
-        sweep.gather(piece, |i, n, j, spot| {
+        let look = |j| (problem.mesh.emission(j), self.light.shown(j), self.light.footprint(j));
+        sweep.gather(piece, look, |i, n, (emission, reflected, footprint), spot| {
             let [direct, indirect] = self.merging.weights(problem.mesh.area(i), n);
-            (problem.mesh.emission(j) * direct + self.light.seen_radiosity(&problem.mesh, j, spot) * indirect)
-                / n as f32
+            (emission * direct + reflected * (footprint.density(spot) * indirect)) / n as f32
         })
     }
 }

@@ -5,7 +5,6 @@
 
 use crate::math::Rgb;
 use crate::solution::Balance;
-use crate::solvers::monte_carlo::light::Light;
 
 /// What the finished sweeps of a complete solution gave.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -38,13 +37,13 @@ impl Sweeps {
         f64::from(1u32 << self.done.min(self.count - 1)) / f64::from((1u32 << self.count) - 1)
     }
 
-    /// Takes in a finished sweep; whether another one follows.
-    pub fn close(&mut self, light: &Light, balance: Balance, rays: u64) -> bool {
+    /// Takes in a finished sweep, which brought `flux(e)` [lm] to element e; whether another one follows.
+    pub fn close(&mut self, flux: impl Fn(u32) -> Rgb, balance: Balance, rays: u64) -> bool {
         if self.count == 1 {
             return false;
         }
         let share = self.share();
-        self.flux.iter_mut().enumerate().for_each(|(e, flux)| *flux += light.on(e as u32) * share as f32);
+        self.flux.iter_mut().zip(0..).for_each(|(sum, e)| *sum += flux(e) * share as f32);
         self.balance = self.balance + balance / (1.0 / share);
         self.rays_before = rays;
         self.done += 1;
