@@ -49,7 +49,7 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("direct light: shooting", 18),
     ("direct light: point light", comparisons(6)),
     ("direct light: rounds", comparisons(6)),
-    ("direct light: stated error", 1),
+    ("direct light: spread of rounds", 1),
     ("indirect light: box", 8 * comparisons(6)),
     ("indirect light: furnace", comparisons(9)),
     ("indirect light: point light", comparisons(8)),

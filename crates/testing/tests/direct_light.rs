@@ -7,10 +7,10 @@ use isolux_core::Problem;
 use isolux_core::form_factors::contour::point_to_polygon;
 use isolux_core::math::Rgb;
 use isolux_core::math::moments::Moments;
-use isolux_core::sampling::{OwenSobol, SequenceName};
+use isolux_core::sampling::OwenSobol;
 use isolux_core::scene::builtin::shapes::Builder;
 use isolux_core::scene::{Light, LightKind, Material, Scene};
-use isolux_core::solvers::direct_light::{DirectLight, Settings};
+use isolux_core::solvers::direct_light::DirectLight;
 use isolux_core::transport::direct_light::{DirectEstimator, Rays, Sight};
 use isolux_core::transport::light_sampling::{LightSampler, Receiver};
 use isolux_testing::budget::{assert_t, refutes};
@@ -287,46 +287,70 @@ fn the_sun_lights_a_floor_exactly() {
     }
 }
 
-fn rounds(problem: &Problem, seed: u64, rounds: u32) -> DirectLight {
-    let sequence: SequenceName = "owen-sobol".parse().unwrap();
-    let mut light = DirectLight::new(problem, Settings { rays: 16, seed, sequence }).unwrap();
-    while light.rounds() < rounds {
+/// Runs the trial and `rounds` rounds of 16 rays for each element, and hands what each of them received to `each`.
+fn rounds(problem: &Problem, seed: u64, rounds: u32, mut each: impl FnMut(u32, Rgb)) -> DirectLight {
+    let mut light = DirectLight::new(problem, seed, "owen-sobol".parse().unwrap());
+    light.begin_trial();
+    for _ in 0..=rounds {
         for piece in 0..light.pieces() {
             let received = light.piece(problem, piece);
-            light.absorb(problem, piece, &received, |_, irradiance, _| irradiance);
+            light.merge(problem, piece, &received, |e, irradiance, weight| {
+                assert_eq!(weight, 1.0, "nothing else was shot");
+                each(e, irradiance);
+            });
+            light.learn(piece, &received);
         }
+        light.begin_round(problem, 16.0 * problem.mesh.len() as f64, f64::INFINITY);
     }
     light
 }
 
-/// Shares are chosen by the light itself, and yet the mean is right, and so is the error it states.
+/// Shares and numbers of rays are chosen by the light itself, and yet the mean is right, and so is its spread over the rounds.
 #[test]
-fn rounds_are_unbiased_and_honest() {
+fn rounds_are_unbiased_and_uncorrelated() {
+    const ROUNDS: u32 = 8;
     let problem = problem("box", 48);
     let exact = exact_in_convex_room::<48>(&problem);
-    let all: Vec<DirectLight> = (0..RUNS).into_par_iter().map(|seed| rounds(&problem, seed, 8)).collect();
-    let means: Vec<Vec<Rgb>> =
-        all.iter().map(|run| problem.mesh.elements().map(|e| run.estimate(e).0).collect()).collect();
+    let run = |seed| {
+        let mut of_elements = vec![Moments::default(); problem.mesh.len()];
+        let mut sums = vec![Rgb::BLACK; problem.mesh.len()];
+        let light = rounds(&problem, seed, ROUNDS, |e, irradiance| {
+            of_elements[e as usize].push(irradiance.luminance_f64());
+            sums[e as usize] += irradiance;
+        });
+        let means: Vec<Rgb> = sums.into_iter().map(|sum| sum / ROUNDS as f32).collect();
+        (light, means, of_elements)
+    };
+    let all: Vec<_> = (0..RUNS).into_par_iter().map(run).collect();
+    let means: Vec<Vec<Rgb>> = all.iter().map(|(_, means, _)| means.clone()).collect();
     assert_exact("direct light: rounds", &problem, &means, &exact);
-    let surplus = |run: &DirectLight| {
+    let surplus = |(_, _, of_elements): &(DirectLight, Vec<Rgb>, Vec<Moments>)| {
         let of_element = |e: u32| {
-            let (mean, variance) = run.estimate(e);
+            let moments = &of_elements[e as usize];
             let [r, g, b] = exact[e as usize];
-            let error = mean.luminance_f64() - (0.2126 * r + 0.7152 * g + 0.0722 * b);
-            f64::from(problem.mesh.area(e)) * (error * error - f64::from(variance))
+            let error = moments.mean - (0.2126 * r + 0.7152 * g + 0.0722 * b);
+            f64::from(problem.mesh.area(e)) * (error * error - moments.std_error().powi(2))
         };
         problem.mesh.elements().map(of_element).sum::<f64>()
     };
     let moments: Moments = all.iter().map(surplus).collect();
-    assert_t("direct light: stated error", moments.mean / moments.std_error(), RUNS as f64 - 1.0);
-    let shares: Vec<f32> = problem.mesh.elements().map(|e| all[0].cosine_share(e)).collect();
-    assert!(shares.iter().any(|&share| share != shares[0]), "some need light rays, some cosine rays: {shares:?}");
+    assert_t("direct light: spread of rounds", moments.mean / moments.std_error(), RUNS as f64 - 1.0);
+}
+
+#[test]
+fn neighbours_choose_the_share_that_suits_them() {
+    let problem = problem("box", 3000);
+    let light = rounds(&problem, 1, 2, |_, _| {});
+    let mut shares: Vec<f32> = problem.mesh.elements().map(|e| light.cosine_share(e)).collect();
+    shares.sort_by(f32::total_cmp);
+    shares.dedup();
+    assert!(shares.len() > 1, "some need light rays, some cosine rays: {shares:?}");
 }
 
 #[test]
 fn pieces_are_pure_and_resumed_rounds_go_on() {
     let problem = problem("cornell-box", 3000);
-    let mut light = rounds(&problem, 1, 1);
+    let mut light = rounds(&problem, 1, 1, |_, _| {});
     assert!(light.pieces() > 2);
     let in_order: Vec<_> = (0..light.pieces()).map(|piece| light.piece(&problem, piece)).collect();
     let pieces: Vec<u64> = (0..light.pieces()).rev().collect();
@@ -334,12 +358,10 @@ fn pieces_are_pure_and_resumed_rounds_go_on() {
     others.reverse();
     assert_eq!(in_order, others);
     let mut resumed: DirectLight = postcard::from_bytes(&postcard::to_stdvec(&light).unwrap()).unwrap();
-    for run in [&mut light, &mut resumed] {
-        for piece in 0..run.pieces() {
-            let received = run.piece(&problem, piece);
-            run.absorb(&problem, piece, &received, |_, irradiance, _| irradiance);
-        }
-    }
-    assert!(problem.mesh.elements().all(|e| light.estimate(e) == resumed.estimate(e)));
-    assert_eq!((light.rounds(), light.rays()), (2, resumed.rays()));
+    let next = |run: &mut DirectLight| {
+        (0..run.pieces()).for_each(|piece| run.learn(piece, &in_order[piece as usize]));
+        run.begin_round(&problem, 1e5, 0.01);
+        run.piece(&problem, 0)
+    };
+    assert_eq!(next(&mut light), next(&mut resumed));
 }

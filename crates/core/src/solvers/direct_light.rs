@@ -42,7 +42,7 @@ const RAYS_PER_PIECE: usize = 1 << 14;
 const MOST: f64 = 256.0;
 /// Fewest rays of an element that sends any: one of each kind.
 const FEWEST_RAYS: u32 = 2;
-/// Who wants fewer sends none.
+/// Who wants fewer sends none, if others have shot.
 const LEAST_WANTED: f64 = 1.0;
 /// Rays of an element in the trial.
 const RAYS_OF_TRIAL: u32 = 4;
@@ -219,7 +219,7 @@ impl DirectLight {
             return if (e as usize).is_multiple_of(TRIAL_OF) { RAYS_OF_TRIAL } else { 0 };
         }
         let wanted = self.wanted(problem, e, self.rays_for_need, self.ray_flux).min(MOST * self.rays.max(1.0));
-        if wanted < LEAST_WANTED { 0 } else { (wanted as u32).max(FEWEST_RAYS) }
+        if wanted < LEAST_WANTED && self.ray_flux.is_finite() { 0 } else { (wanted as u32).max(FEWEST_RAYS) }
     }
 
     /// The share of cosine rays of element `e` in the running round.

@@ -15,10 +15,10 @@ use isolux_core::math::Rgb;
 use isolux_core::math::warp::square_to_triangle;
 use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
-use isolux_core::sampling::{OwenSobol, Sequence, SequenceName};
+use isolux_core::sampling::{OwenSobol, Sequence};
 use isolux_core::scene::Scene;
 use isolux_core::scene::builtin::builtin;
-use isolux_core::solvers::direct_light::{DirectLight, Settings};
+use isolux_core::solvers::direct_light::DirectLight;
 use isolux_core::solvers::monte_carlo::{self, Budget, MonteCarlo};
 use isolux_core::transport::direct_light::{DirectEstimator, Rays};
 use isolux_core::transport::{Departure, Footprint, LightSampler};
@@ -126,15 +126,22 @@ fn fixed(problem: &Problem, rays: Rays, seed: u64) -> (Vec<Rgb>, u64) {
 }
 
 fn adaptive(problem: &Problem, rays: u32, seed: u64) -> Result<(Vec<Rgb>, u64)> {
-    let sequence: SequenceName = "owen-sobol".parse()?;
-    let mut light = DirectLight::new(problem, Settings { rays: rays / ROUNDS, seed, sequence })?;
-    while light.rounds() < ROUNDS {
+    let mut light = DirectLight::new(problem, seed, "owen-sobol".parse()?);
+    let of_round = f64::from(rays / ROUNDS) * problem.mesh.len() as f64;
+    let (mut sum, mut traced) = (vec![Rgb::BLACK; problem.mesh.len()], 0);
+    light.begin_trial();
+    for round in 0..=ROUNDS {
         for piece in 0..light.pieces() {
             let received = light.piece(problem, piece);
-            light.absorb(problem, piece, &received, |_, irradiance, _| irradiance);
+            traced += received.iter().map(|received| u64::from(received.rays)).sum::<u64>();
+            light.merge(problem, piece, &received, |e, irradiance, _| sum[e as usize] += irradiance);
+            light.learn(piece, &received);
+        }
+        if round < ROUNDS {
+            light.begin_round(problem, of_round, f64::INFINITY);
         }
     }
-    Ok((problem.mesh.elements().map(|e| light.estimate(e).0).collect(), light.rays()))
+    Ok((sum.into_iter().map(|sum| sum / ROUNDS as f32).collect(), traced))
 }
 
 /// Breadth-first, one complete solution: in a black room its first and only step.

@@ -42,13 +42,7 @@ pub fn bundles_of(problem: &Problem, rays: f64) -> (u64, u32) {
 impl Bundles {
     /// Begins anew: elements reflect the light that was shot, and shall have about as many crossings together as `rays` rays cost.
     /// `known(bundles, crossings)` is how well so many bundles and crossings [1/m²] will tell it.
-    pub fn begin(
-        &mut self,
-        problem: &Problem,
-        rays: u64,
-        known: impl Fn(f64, f64) -> Precision,
-        light: &Light,
-    ) {
+    pub fn begin(&mut self, problem: &Problem, rays: u64, known: impl Fn(f64, f64) -> Precision, light: &Light) {
         (self.count, self.cells) = bundles_of(problem, rays as f64);
         self.absorbed = 0;
         let crossings = self.count as f64 * crossings_per_area(problem, self.cells);

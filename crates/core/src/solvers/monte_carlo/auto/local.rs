@@ -22,7 +22,8 @@ pub struct Local {
 
 impl Local {
     /// Begins anew with so many `rays`, where indirect light is `known` so well; `u` in [0, 1).
-    pub fn begin(&mut self, problem: &Problem, rays: u64, known: Precision, u: f64) {
+    pub fn begin(&mut self, problem: &Problem, rays: u64, known: Precision, u: f64, shot: &mut Relaxation) {
+        shot.light_mut().show(&problem.mesh);
         (self.absorbed, self.known) = (0, known);
         let area = |e| f64::from(problem.mesh.area(e));
         let limit = known.limit(problem.mesh.elements().map(area), rays as f64);
@@ -40,7 +41,8 @@ impl Local {
     pub fn part(&self, problem: &Problem, sequence: &dyn Sequence, shot: &Relaxation, piece: u64) -> Part {
         let (counters, light) = (Counters::default(), shot.light());
         let sweep = gathering::Sweep { problem, sequence, counters: &counters, allocation: &self.allocation };
-        sweep.gather(piece, |_, n, seen, spot| light.seen_radiosity(&problem.mesh, seen, spot) / n as f32)
+        let look = |seen| (light.shown(seen), light.footprint(seen));
+        sweep.gather(piece, look, |_, n, (radiosity, footprint), spot| radiosity * footprint.density(spot) / n as f32)
     }
 
     /// Takes in the next piece in order, and merges all of it with `shot` after the last; whether it was that.

@@ -25,7 +25,7 @@ use self::local::Local;
 use self::plan::Plan;
 use super::complete::CompleteSolution;
 use super::relaxation::{Course, Relaxation, Stage};
-use super::{Experience, Settings, sources};
+use super::{Experience, LightPart, Settings, sources};
 use crate::Problem;
 use crate::math::Rgb;
 use crate::math::hash::{derive, unit_f64};
@@ -51,6 +51,7 @@ enum Phase {
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 pub struct Auto {
     sequence: SequenceName,
+    wanted: LightPart,
     seed: u64,
     phase: Phase,
     plan: Plan,
@@ -72,6 +73,7 @@ impl Auto {
         let stages = [Stage::Lamps, Stage::Emission, Stage::Incremental { share: 1.0, every_step: false }];
         Auto {
             sequence: settings.method.sequence,
+            wanted: settings.light,
             seed: settings.seed,
             phase: Phase::Done,
             plan: Plan::default(),
@@ -102,7 +104,7 @@ impl Auto {
             Phase::Bundles => {
                 self.bundles.merge(problem, &mut self.shooting);
                 let u = unit_f64(derive(self.seed, Phase::Local as u64));
-                self.local.begin(problem, self.plan.local, self.bundles.precision(), u);
+                self.local.begin(problem, self.plan.local, self.bundles.precision(), u, &mut self.shooting);
                 Phase::Local
             }
             Phase::Local | Phase::Done => Phase::Done,
@@ -127,7 +129,10 @@ impl Auto {
         match self.direct.light() {
             _ if rays < FEWEST_RAYS * problem.mesh.len() as u64 => Plan::only_shooting(rays),
             None => Plan::careful(rays),
-            Some(direct) => Plan::best(problem, rays, experience, direct, &self.indirect),
+            Some(direct) => {
+                let direct = (self.wanted == LightPart::All).then_some(direct);
+                Plan::best(problem, rays, experience, direct, &self.indirect)
+            }
         }
     }
 
@@ -198,6 +203,11 @@ impl CompleteSolution for Auto {
 
     fn balance(&self) -> Balance {
         self.shooting.balance()
+    }
+
+    fn retire(&mut self) {
+        self.shooting.retire();
+        self.local = Local::default();
     }
 
     fn experience(&self) -> Experience {

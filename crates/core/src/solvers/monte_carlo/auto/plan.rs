@@ -40,8 +40,7 @@ impl Plan {
 
     /// So many parts for shooting, direct light, bundles and local lines.
     fn of_parts(rays: u64, parts: [u32; 4]) -> Plan {
-        let [shooting, direct, bundles, local] =
-            parts.map(|part| rays as f64 * f64::from(part) / f64::from(PARTS));
+        let [shooting, direct, bundles, local] = parts.map(|part| rays as f64 * f64::from(part) / f64::from(PARTS));
         Plan {
             shooting: shooting as u64,
             direct: (direct / COST_OF_LOOKING) as u64,
@@ -50,12 +49,12 @@ impl Plan {
         }
     }
 
-    /// The best plan for `rays` rays.
+    /// The best plan for `rays` rays; without `direct`, if only indirect light is wanted.
     pub fn best(
         problem: &Problem,
         rays: u64,
         experience: &Experience,
-        direct: &DirectLight,
+        direct: Option<&DirectLight>,
         indirect: &Indirect,
     ) -> Plan {
         let mesh = &problem.mesh;
@@ -64,7 +63,9 @@ impl Plan {
         let areas = sample.clone().map(|e| f64::from(mesh.area(e)));
         let share = 1.0 / every as f64;
         let variance_of_direct = |plan: &Plan, ray_flux: f64| {
-            direct.expected_variance(problem, sample.clone(), plan.direct as f64 * share, ray_flux)
+            direct.map_or(0.0, |direct| {
+                direct.expected_variance(problem, sample.clone(), plan.direct as f64 * share, ray_flux)
+            })
         };
         let variance_of_indirect = |plan: &Plan, ray_flux: f64| {
             let (bundles, cells) = bundles_of(problem, plan.bundles as f64);
@@ -78,11 +79,6 @@ impl Plan {
             variance_of_direct(&plan, ray_flux) + variance_of_indirect(&plan, ray_flux)
         };
         let best = shares().map(|parts| (expected(&parts), parts)).min_by(|a, b| a.0.total_cmp(&b.0));
-        if std::env::var("ISO_DEBUG").is_ok() {
-            let parts = |parts: [u32; 4]| { let plan = Plan::of_parts(rays, parts); let f = ray_flux(problem, plan.shooting as f64, experience); (variance_of_direct(&plan, f), variance_of_indirect(&plan, f)) };
-            eprintln!("{best:?}");
-            for p in [[10, 0, 0, 0], [5, 5, 0, 0], [2, 8, 0, 0], [5, 0, 5, 0], [2, 0, 8, 0], [2, 4, 4, 0], [4, 3, 2, 1]] { eprintln!("   {p:?} {:?}", parts(p)); }
-        }
         best.map_or_else(|| Plan::careful(rays), |(_, parts)| Plan::of_parts(rays, parts))
     }
 }
