@@ -19,7 +19,7 @@ mod slices;
 mod triangle;
 
 pub use cut::Cut;
-pub use lookup::Lookup;
+pub use lookup::{LANES, Lookup};
 pub use resolution::Resolution;
 
 use crate::math::Rgb;
