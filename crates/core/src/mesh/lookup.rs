@@ -58,14 +58,14 @@ impl ElementMesh {
     #[inline(always)]
     pub fn patches_at(&self, triangle: u32, [u, v]: [&[f32]; 2], patch: &mut [u32], [x, y]: [&mut [f32]; 2]) {
         let Surface { first_patch, slices, .. } = self.surfaces[triangle as usize];
-        if slices == Slices::WHOLE {
-            patch.fill(first_patch);
-            x.copy_from_slice(u);
-            return y.copy_from_slice(v);
-        }
         let within = x.as_chunks_mut::<LANES>().0.iter_mut().zip(y.as_chunks_mut::<LANES>().0);
         let points = u.as_chunks::<LANES>().0.iter().zip(v.as_chunks::<LANES>().0);
         for ((patch, (x, y)), (u, v)) in patch.as_chunks_mut::<LANES>().0.iter_mut().zip(within).zip(points) {
+            if slices == Slices::WHOLE {
+                // Here and not by slices: most triangles have a few points, for which calls to copy them are too long.
+                (*patch, *x, *y) = ([first_patch; LANES], *u, *v);
+                continue;
+            }
             let [along, across] = slices.along_edges(*u, *v);
             let located = from_fn(|k| slices.patch_at(along[k], across[k]));
             *patch = located.map(|(patch, _)| first_patch + patch);

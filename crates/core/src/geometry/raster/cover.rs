@@ -70,7 +70,7 @@ impl Projected {
     }
 
     /// Which points it covers; `None` if it is seen edge-on and covers none.
-    #[inline]
+    #[inline(always)]
     pub fn coverage(&self) -> Option<Coverage> {
         let corners = [0, 1, 2].map(|k| [i64::from(self.x[k]), i64::from(self.y[k])]);
         let [a, b, c] = corners;
