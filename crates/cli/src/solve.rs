@@ -88,7 +88,7 @@ pub struct Solve {
     #[command(flatten)]
     threads: ThreadArguments,
 
-    /// Independent solutions that the error is estimated from, at least 8 [default: 16]
+    /// Independent solutions that the error is estimated from, at least 8 [default: 16, and 8 for auto]
     #[arg(long, value_name = "R")]
     replicates: Option<u32>,
 
@@ -241,7 +241,7 @@ impl Solve {
             method,
             seed: self.seed,
             budget,
-            replicates: self.replicates.unwrap_or(default.replicates),
+            replicates: self.replicates.unwrap_or(method.natural_replicates()),
             leaving: self.leaving.unwrap_or(default.leaving),
             light,
         })

@@ -142,7 +142,7 @@ fn rasterised(problem: &Problem, samples: &[Sample], cells: u32) -> usize {
         let grid = Grid::new(problem.geometry.bounding_sphere(), direction, [x3, x4].into(), cells);
         let raster = Raster::of(&problem.scene, grid);
         for tile in 0..grid.tiles() {
-            crossings += raster.hits(tile).iter().map(<[_]>::len).sum::<usize>();
+            crossings += raster.hits(tile).iter().map(|list| list.len()).sum::<usize>();
         }
     }
     crossings

@@ -49,8 +49,8 @@ fn crossings_have_the_elements_of_their_hits() {
             let mut found = TileLists::default();
             bundle.crossings(tile, &mut found);
             let hits = raster.hits(tile);
-            assert_eq!(found.lists.len(), hits.len());
-            for (crossing, hit) in found.lists.iter().flatten().zip(hits.iter().flatten()) {
+            assert_eq!(found.len(), hits.len());
+            for (crossing, hit) in found.iter().flatten().zip(hits.iter().flatten()) {
                 let on = |back| problem.mesh.at(hit.triangle, hit.uv, back);
                 let expected = (hit.t, on(hit.back), on(!hit.back));
                 assert_eq!((crossing.t, crossing.near.element(), crossing.far.element()), expected, "{hit:?}");
@@ -82,8 +82,8 @@ fn compare(problem: &Problem, sample: Sample) -> (usize, usize) {
     let (mut all, mut missing, mut found) = (0, 0, TileLists::default());
     for tile in 0..bundle.tiles() {
         bundle.crossings(tile, &mut found);
-        for (crossings, expected) in found.lists.iter().zip(traced(problem, sample, tile)) {
-            let spans = of_line(problem, crossings.iter().copied());
+        for (crossings, expected) in found.iter().zip(traced(problem, sample, tile)) {
+            let spans = of_line(problem, crossings);
             all += expected.len();
             missing += expected.iter().filter(|span| !spans.contains(span)).count();
         }

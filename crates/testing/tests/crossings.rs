@@ -112,6 +112,7 @@ fn rasterised_crossings_are_those_of_rays() {
                 problem.geometry.all(&lines, &mut traced);
                 assert_eq!((rasterised.len(), traced.len()), (lines.len(), lines.len()));
                 for ((a, b), line) in rasterised.iter().zip(traced.iter()).zip(&lines) {
+                    let a = &a.collect::<Vec<Hit>>();
                     crossings += b.len();
                     different += missing(&problem, line, a, b) + missing(&problem, line, b, a);
                 }
@@ -128,7 +129,7 @@ fn lines_through_shared_edges_cross_once() {
     let (center, _) = problem.geometry.bounding_sphere();
     let grid = Grid::new((center, 4.0), Vec3::Z, Vec2::ZERO, 8);
     let raster = Raster::of(&problem.scene, grid);
-    let crossed: Vec<usize> = raster.hits(0).iter().map(<[Hit]>::len).collect();
+    let crossed: Vec<usize> = raster.hits(0).iter().map(|hits| hits.len()).collect();
     // Lines a metre apart: four by four of them in a room of four metres, some through diagonals, edges and corners.
     assert_eq!(crossed.iter().filter(|&&crossings| crossings == 2).count(), 16);
     assert_eq!(crossed.iter().sum::<usize>(), 32);

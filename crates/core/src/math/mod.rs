@@ -1,4 +1,4 @@
-//! Small mathematics that everything else stands on: colour, frames, warps, moments, spherical triangles.
+//! Small mathematics that everything else stands on: colour, frames, warps, moments, spherical triangles, whole parts.
 
 pub mod color;
 pub mod frame;
@@ -6,6 +6,7 @@ pub mod hash;
 pub mod moments;
 pub mod spherical_triangle;
 pub mod warp;
+pub mod whole;
 
 pub use color::Rgb;
 pub use frame::Frame;

@@ -3,6 +3,7 @@
 //! In barycentric coordinates (u, v), row i holds the cells with `floor(u m) = i`: first an upright cell, then a
 //! reversed one, and so on, `2 (m - i) - 1` in all. Cell numbers run row by row: `i (2 m - i) + 2 j + reversed`.
 
+use crate::math::whole::{number, smaller, whole};
 use glam::Vec2;
 
 /// Number of cells of a triangle with `m` divisions.
@@ -17,18 +18,18 @@ pub fn at(uv: Vec2, m: u16) -> u32 {
 }
 
 /// As [`at`], with the barycentric coordinates within the cell, in the order of its [`corners`].
-#[inline]
+#[inline(always)]
 pub fn locate(uv: Vec2, m: u16) -> (u32, Vec2) {
-    let m = u32::from(m);
-    let grid = uv * m as f32;
-    // What is less than zero is cast to zero. To 16 bits, for their bounds are numbers in single precision: no other cast is as cheap.
-    let i = u32::from(grid.x as u16).min(m - 1);
-    let j = u32::from(grid.y as u16).min(m - 1 - i);
-    let within = grid - Vec2::new(i as f32, j as f32);
+    let size = f32::from(m);
+    let (x, y) = (uv.x * size, uv.y * size);
+    let i = smaller(whole(x), size - 1.0);
+    let j = smaller(whole(y), size - 1.0 - i);
+    let within = Vec2::new(x - i, y - j);
     // Half the points lie in reversed cells, in no order: a branch would be guessed wrong at every second one.
-    let reversed = u32::from(within.x + within.y > 1.0) & u32::from(i + j + 2 <= m);
-    let mirrored = reversed as f32;
-    (i * (2 * m - i) + 2 * j + reversed, mirrored + (1.0 - 2.0 * mirrored) * within)
+    let reversed = (within.x + within.y > 1.0) & (i + j + 2.0 <= size);
+    let mirrored = if reversed { 1.0 } else { 0.0 };
+    let (i, odd) = (number(i), number(2.0 * j + mirrored));
+    (i * (2 * u32::from(m) - i) + odd, mirrored + (1.0 - 2.0 * mirrored) * within)
 }
 
 /// Barycentric coordinates of the corners of `cell`, in the orientation of the triangle.

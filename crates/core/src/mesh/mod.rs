@@ -22,7 +22,7 @@ mod triangle;
 
 pub use cut::Cut;
 pub use locate::{Point, TOGETHER};
-pub use lookup::Lookup;
+pub use lookup::{LANES, Lookup};
 pub use resolution::Resolution;
 
 use crate::math::Rgb;

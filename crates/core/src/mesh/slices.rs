@@ -7,6 +7,7 @@
 //! With the tip at the origin and one unit along each long edge for each slice, slice i lies between x + y = i and i + 1. Its
 //! diagonal runs from (i, 0) to (0, i + 1); patch 2i lies beyond it, patch 2i - 1 before it.
 
+use crate::math::whole::{number, smaller, whole};
 use glam::{Vec2, Vec3};
 
 /// How a triangle is cut into patches.
@@ -64,25 +65,34 @@ impl Slices {
         if self.count == 1 {
             return (0, uv);
         }
-        let p = (self.along_edges(uv) * f32::from(self.count)).max(Vec2::ZERO);
-        let i = ((p.x + p.y) as u16).min(self.count - 1);
-        let below = f32::from(i);
-        let beyond = p.x * (below + 1.0) + p.y * below >= below * (below + 1.0);
-        // Half the points lie beyond the diagonal, in no order: values are chosen, for a branch would be guessed wrong.
-        let across = if beyond { p.y } else { p.x } / if beyond { below + 1.0 } else { below };
-        let up = p.x + p.y - below;
-        let within = [Vec2::new(up, 1.0 - across - up), Vec2::new(p.x - below * (1.0 - across), across)];
-        let select = |coordinate: usize| if beyond { within[1][coordinate] } else { within[0][coordinate] };
-        (2 * u32::from(i) - u32::from(!beyond), Vec2::new(select(0), select(1)))
+        let [[x], [y]] = self.along_edges([uv.x], [uv.y]);
+        self.patch_at(x, y)
     }
 
-    /// Coordinates along the two edges that leave the tip, of a point of the triangle.
-    fn along_edges(self, uv: Vec2) -> Vec2 {
-        let first = 1.0 - uv.x - uv.y;
+    /// As [`Slices::locate`], for what lies at (x, y) [`along the edges`](Slices::along_edges) of a needle.
+    #[inline(always)]
+    pub fn patch_at(self, x: f32, y: f32) -> (u32, Vec2) {
+        let count = f32::from(self.count);
+        let positive = |x: f32| if x > 0.0 { x } else { 0.0 };
+        let (x, y) = (positive(x * count), positive(y * count));
+        let below = smaller(whole(x + y), count - 1.0);
+        let beyond = x * (below + 1.0) + y * below >= below * (below + 1.0);
+        // Half the points lie beyond the diagonal, in no order: values are chosen, for a branch would be guessed wrong.
+        let across = if beyond { y } else { x } / if beyond { below + 1.0 } else { below };
+        let up = x + y - below;
+        let within = [Vec2::new(up, 1.0 - across - up), Vec2::new(x - below * (1.0 - across), across)];
+        let select = |coordinate: usize| if beyond { within[1][coordinate] } else { within[0][coordinate] };
+        (2 * number(below) - u32::from(!beyond), Vec2::new(select(0), select(1)))
+    }
+
+    /// Coordinates along the two edges that leave the tip, of points of the triangle.
+    #[inline(always)]
+    pub fn along_edges<const N: usize>(self, u: [f32; N], v: [f32; N]) -> [[f32; N]; 2] {
+        let first = std::array::from_fn(|k| 1.0 - u[k] - v[k]);
         match self.tip {
-            0 => uv,
-            1 => Vec2::new(uv.y, first),
-            _ => Vec2::new(first, uv.x),
+            0 => [u, v],
+            1 => [v, first],
+            _ => [first, u],
         }
     }
 

@@ -41,9 +41,13 @@ const RAYS_PER_PIECE: usize = 1 << 14;
 /// Most rays of an element, as a multiple of the mean.
 const MOST: f64 = 256.0;
 /// Fewest rays of an element that sends any: one of each kind.
-const FEWEST_RAYS: u32 = 2;
+const FEWEST_RAYS: u32 = 3;
 /// Who wants fewer sends none, if others have shot.
-const LEAST_WANTED: f64 = 1.0;
+const LEAST_WANTED: f64 = 1.5;
+/// Elements by which the rays are shared out, about.
+const SAMPLE: usize = 4096;
+/// Number of rays for which shares are compared: of these all shares are whole numbers.
+const RAYS_OF_COMPARISON: u32 = 16;
 /// Rays of an element in the trial.
 const RAYS_OF_TRIAL: u32 = 4;
 /// Least variance of a ray, relative to the square of the mean: few rays cannot tell that there is less.
@@ -128,7 +132,9 @@ impl DirectLight {
         self.rounds += 1;
         self.learn_from_round();
         (self.rays, self.ray_flux) = (rays / self.elements as f64, ray_flux);
-        self.rays_for_need = self.rays_for_need(problem, problem.mesh.elements(), rays, ray_flux);
+        let every = self.elements.div_ceil(SAMPLE);
+        let sample = problem.mesh.elements().step_by(every);
+        self.rays_for_need = self.rays_for_need(problem, sample, rays / every as f64, ray_flux);
     }
 
     /// What the sum of `sqrt(A) V` over `elements` would be if they had `rays` rays together, merged with rays of so much flux [lm].
@@ -234,14 +240,14 @@ impl DirectLight {
         }
         let rays = split(count, self.cosine_share(e));
         let mut sum = Rgb::BLACK;
-        let mut trials = COSINE_SHARES.map(|share| Trial::new(split(count, share)));
+        let mut trials = COSINE_SHARES.map(|share| Trial::new(split(RAYS_OF_COMPARISON, share), count));
         let traced = light.look(e, rays, |sight| {
             let irradiance = sight.irradiance(rays);
             sum += irradiance;
             trials.iter_mut().for_each(|trial| trial.add(&sight, irradiance.luminance()));
         });
         let shadow = light.lamps(e, count, |_, irradiance| sum += irradiance);
-        let variances = trials.map(|trial| trial.variance() * count as f32);
+        let variances = trials.map(|trial| trial.variance() * RAYS_OF_COMPARISON as f32);
         Received { irradiance: sum, variances, rays: (traced + shadow) as u32 }
     }
 
@@ -297,6 +303,8 @@ fn split(rays: u32, cosine_share: f32) -> Rays {
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     rays: Rays,
+    /// Rays that were sent.
+    sent: u32,
     /// The first integral of the variance.
     square: f32,
     /// The other two, by the parts that both kinds of rays add to the mean: their sums and sums of squares.
@@ -305,8 +313,8 @@ struct Trial {
 }
 
 impl Trial {
-    fn new(rays: Rays) -> Trial {
-        Trial { rays, square: 0.0, by_cosine: [0.0; 2], by_light: [0.0; 2] }
+    fn new(rays: Rays, sent: u32) -> Trial {
+        Trial { rays, sent, square: 0.0, by_cosine: [0.0; 2], by_light: [0.0; 2] }
     }
 
     /// Adds a ray that has added `irradiance` [lux].
@@ -324,8 +332,8 @@ impl Trial {
 
     /// Unbiased, so it may be negative: products of two different rays stand for the squares of means.
     fn variance(&self) -> f32 {
-        let rays = (self.rays.cosine + self.rays.light) as f32;
-        let squared = |[sum, sum_sq]: [f32; 2]| (sum * sum - sum_sq) * rays / (rays - 1.0);
+        let sent = self.sent as f32;
+        let squared = |[sum, sum_sq]: [f32; 2]| (sum * sum - sum_sq) * sent / (sent - 1.0);
         self.square
             - squared(self.by_cosine) / self.rays.cosine as f32
             - squared(self.by_light) / self.rays.light as f32

@@ -1,9 +1,14 @@
 //! Independent replicates: their mean is the estimate, their spread its error bar.
 //!
 //! Replicates of one *round* have the same number of rays each, so their mean and variance are those of a plain sample
-//! (Welford). Rounds of different sizes are averaged by their numbers of rays: `E = Σ w_k E_k`, `V = Σ w_k² V_k`.
+//! (Welford). Rounds of different sizes are averaged with weights: `E = Σ w_k E_k`, `V = Σ w_k² V_k`. The weights are the inverse of
+//! the rounds' variances, of all elements together: no element's own noise decides about it, and a method that gets better with more
+//! rays is not held back by its first steps. Where there are few elements the weights are the numbers of rays.
 
 use crate::math::Rgb;
+
+/// With fewer elements one of them might decide about the weights.
+const FEW_ELEMENTS: usize = 64;
 
 /// Running mean and variance per element over replicates and rounds, 48 bytes an element.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -13,11 +18,13 @@ pub struct Replicates {
     sum_sq_dev: Vec<Rgb>,
     count: u32,
     rays: u64,
+    /// Weight of the running round.
+    precision: f64,
     /// The rounds before: mean and variance of the mean. Empty before the first round closes.
     earlier_mean: Vec<Rgb>,
     earlier_variance: Vec<Rgb>,
     earlier_count: u32,
-    earlier_rays: u64,
+    earlier_precision: f64,
 }
 
 impl Replicates {
@@ -27,8 +34,8 @@ impl Replicates {
         Replicates { mean: zeros(), sum_sq_dev: zeros(), ..Replicates::default() }
     }
 
-    /// Adds one replicate that took `rays` rays, its estimates in the order of the elements.
-    pub fn push(&mut self, rays: u64, values: impl Iterator<Item = Rgb>) {
+    /// Adds one replicate that took `rays` rays, its estimates in the order of the elements, whose areas are `area(e)` [m²].
+    pub fn push(&mut self, rays: u64, values: impl Iterator<Item = Rgb>, area: impl Fn(u32) -> f32) {
         self.count += 1;
         self.rays += rays;
         let share = 1.0 / self.count as f32;
@@ -37,6 +44,26 @@ impl Replicates {
             *mean += delta * share;
             *sum += delta * (value - *mean);
         }
+        self.precision = self.measure_precision(area);
+    }
+
+    /// What the running round is worth: one over its variance, relative to each element's mean and the scene's, and at most 1 for an
+    /// element that is hardly known.
+    fn measure_precision(&self, area: impl Fn(u32) -> f32) -> f64 {
+        if self.mean.len() < FEW_ELEMENTS || self.count < 2 {
+            return self.rays as f64;
+        }
+        let areas = || (0..self.mean.len() as u32).map(|e| f64::from(area(e)));
+        let mean = |(area, mean): (f64, &Rgb)| area * mean.luminance_f64();
+        let scene_mean = areas().zip(&self.mean).map(mean).sum::<f64>() / areas().sum::<f64>();
+        let freedom = f64::from(self.count) * f64::from(self.count - 1);
+        let variance = |(area, (mean, sum)): (f64, (&Rgb, &Rgb))| {
+            let scale = (mean.luminance_f64() + scene_mean).powi(2).max(f64::MIN_POSITIVE);
+            area * (sum.luminance_f64() / freedom / scale).min(1.0)
+        };
+        let variance = areas().zip(self.mean.iter().zip(&self.sum_sq_dev)).map(variance).sum::<f64>();
+        // Rounds without any noise, as in the dark, weigh the same.
+        if variance > 0.0 { 1.0 / variance } else { f64::from(self.count) }
     }
 
     /// Closes the running round, so that replicates of another size can follow.
@@ -47,7 +74,7 @@ impl Replicates {
         let merged: (Vec<Rgb>, Vec<Rgb>) = (0..self.mean.len() as u32).map(|e| self.estimate(e)).unzip();
         (self.earlier_mean, self.earlier_variance) = merged;
         self.earlier_count += self.count;
-        self.earlier_rays += self.rays;
+        self.earlier_precision += self.precision;
         self.mean.fill(Rgb::BLACK);
         self.sum_sq_dev.fill(Rgb::BLACK);
         (self.count, self.rays) = (0, 0);
@@ -77,7 +104,7 @@ impl Replicates {
         if self.earlier_mean.is_empty() {
             return (self.mean[e], variance);
         }
-        let now = (self.rays as f64 / (self.rays + self.earlier_rays) as f64) as f32;
+        let now = (self.precision / (self.precision + self.earlier_precision)) as f32;
         let mean = self.mean[e] * now + self.earlier_mean[e] * (1.0 - now);
         (mean, variance * (now * now) + self.earlier_variance[e] * ((1.0 - now) * (1.0 - now)))
     }
@@ -92,11 +119,15 @@ impl Replicates {
 mod tests {
     use super::*;
 
+    fn push(replicates: &mut Replicates, rays: u64, values: &[f32]) {
+        replicates.push(rays, values.iter().map(|&value| Rgb::grey(value)), |_| 1.0);
+    }
+
     #[test]
     fn one_round_gives_the_mean_and_its_standard_error() {
         let mut replicates = Replicates::new(1);
         for value in [2.0, 4.0, 9.0] {
-            replicates.push(10, std::iter::once(Rgb::grey(value)));
+            push(&mut replicates, 10, &[value]);
         }
         let (mean, variance) = replicates.estimate(0);
         assert_eq!(mean, Rgb::grey(5.0));
@@ -104,18 +135,41 @@ mod tests {
     }
 
     #[test]
-    fn rounds_are_weighted_by_their_rays() {
+    fn rounds_of_few_elements_are_weighted_by_their_rays() {
         let mut replicates = Replicates::new(1);
-        replicates.push(10, std::iter::once(Rgb::grey(1.0)));
-        replicates.push(10, std::iter::once(Rgb::grey(3.0)));
+        push(&mut replicates, 10, &[1.0]);
+        push(&mut replicates, 10, &[3.0]);
         replicates.close_round();
-        replicates.push(30, std::iter::once(Rgb::grey(100.0)));
+        push(&mut replicates, 30, &[100.0]);
         assert_eq!(replicates.estimate(0).0, Rgb::grey(2.0), "a single replicate has no spread and waits");
-        replicates.push(30, std::iter::once(Rgb::grey(102.0)));
+        push(&mut replicates, 30, &[102.0]);
         // Weights 20 : 60; variances of the two means are both 1.
         let (mean, variance) = replicates.estimate(0);
         assert!((mean.r - (0.25 * 2.0 + 0.75 * 101.0)).abs() < 1e-4);
         assert!((variance.r - (0.0625 + 0.5625)).abs() < 1e-5);
         assert_eq!(replicates.count(), 4);
+    }
+
+    #[test]
+    fn rounds_of_many_elements_are_weighted_by_their_variances() {
+        // Values 10 ± d: variances of the means d² / 7, with d = 2 and then 1, whatever the rays.
+        let mut replicates = Replicates::new(100);
+        for (rays, d) in [(1000, 2.0), (10, 1.0)] {
+            for k in 0..8 {
+                let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+                let shift = if rays == 10 { 1.0 } else { 0.0 };
+                push(&mut replicates, rays, &[10.0 + shift + sign * d; 100]);
+            }
+            if rays == 1000 {
+                replicates.close_round();
+            }
+        }
+        // Relative to twice the mean: (2 / 20)² against (1 / 22)².
+        let (first, second) = (1.0 / (4.0 / 400.0), 1.0 / (1.0 / 484.0));
+        let weight = second / (first + second);
+        let (mean, variance) = replicates.estimate(0);
+        assert!((f64::from(mean.r) - (10.0 + weight)).abs() < 1e-4, "{mean:?}");
+        let expected = (1.0 - weight).powi(2) * 4.0 / 7.0 + weight.powi(2) / 7.0;
+        assert!((f64::from(variance.r) - expected).abs() < 1e-4, "{variance:?} {expected}");
     }
 }

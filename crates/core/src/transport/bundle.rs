@@ -11,13 +11,13 @@
 //! Unbiased, but for corners rounded to 1/65,536 of a cell. Cost: O(triangles) a bundle, and then O(crossings), by
 //! rasterisation; the analytic sphere is traced by rays.
 
+use super::Crossing;
 use super::span::{Span, spans};
-use super::{Crossing, Met};
 use crate::Error;
 use crate::Problem;
+use crate::geometry::HitLists;
 use crate::geometry::raster::grid::{Grid, MOST_CELLS};
 use crate::geometry::raster::{Raster, TileLists};
-use crate::geometry::{HitLists, Lists};
 use crate::math::warp::square_to_sphere;
 use crate::sampling::{Sample, Sequence};
 use crate::scene::Shape;
@@ -90,7 +90,7 @@ impl<'a> Bundle<'a> {
         let mut found = TileLists::default();
         for tile in tiles {
             self.crossings(tile, &mut found);
-            found.lists.iter().for_each(|crossings| spans(lift, crossings.iter().copied(), &mut each));
+            found.iter().for_each(|crossings| spans(lift, crossings, &mut each));
         }
     }
 
@@ -98,27 +98,15 @@ impl<'a> Bundle<'a> {
     /// that does not exist.
     pub fn crossings(&self, tile: u32, found: &mut TileLists<Crossing>) {
         match &self.raster {
-            Some(raster) => self.rasterise(raster, tile, found),
-            None => self.trace(tile, &mut found.lists),
+            Some(raster) => raster.crossings(tile, &self.problem.mesh, found),
+            None => self.trace(tile, found),
         }
     }
 
-    fn rasterise(&self, raster: &Raster, tile: u32, found: &mut TileLists<Crossing>) {
-        let meet = |triangle, back| {
-            let met = Met::new(&self.problem.mesh, triangle, back);
-            move |t, uv| met.crossing(t, uv)
-        };
-        raster.crossings(tile, meet, found);
-    }
-
-    fn trace(&self, tile: u32, found: &mut Lists<Crossing>) {
+    fn trace(&self, tile: u32, found: &mut TileLists<Crossing>) {
         let mut lists = HitLists::default();
         self.problem.geometry.all(&self.grid.lines(tile), &mut lists);
-        found.clear();
-        for hits in lists.iter() {
-            hits.iter().for_each(|hit| found.push(Crossing::of(self.problem, hit)));
-            found.finish();
-        }
+        found.fill(lists.iter().map(|hits| hits.iter().map(|hit| (hit.t, Crossing::of(self.problem, hit)))));
     }
 }
 

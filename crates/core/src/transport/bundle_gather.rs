@@ -49,34 +49,39 @@ impl Source {
 
 /// What the crossings of each element have seen, 32 bytes an element: sums of radiosities [lm/m²], and their number.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Sums(Vec<[f64; 4]>);
+pub struct Sums(Vec<Sum>);
+
+/// Red, green, blue and the number of crossings, side by side in one line of the cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[repr(align(32))]
+struct Sum([f64; 4]);
 
 impl Sums {
     /// Nothing yet.
     pub fn new(problem: &Problem) -> Sums {
-        Sums(vec![[0.0; 4]; problem.mesh.len() + 1])
+        Sums(vec![Sum::default(); problem.mesh.len() + 1])
     }
 
     /// Forgets everything and keeps the memory.
     pub fn clear(&mut self) {
-        self.0.fill([0.0; 4]);
+        self.0.fill(Sum::default());
     }
 
     /// Adds other sums of the same problem.
     pub fn add(&mut self, other: &Sums) {
-        for (sum, other) in self.0.iter_mut().zip(&other.0) {
+        for (Sum(sum), Sum(other)) in self.0.iter_mut().zip(&other.0) {
             sum.iter_mut().zip(other).for_each(|(sum, other)| *sum += other);
         }
     }
 
     /// How often element `e` has been crossed.
     pub fn crossings(&self, e: u32) -> f64 {
-        self.0[e as usize][3]
+        self.0[e as usize].0[3]
     }
 
     /// Irradiance [lm/m²] of element `e`; `None` if no line has crossed it.
     pub fn irradiance(&self, e: u32) -> Option<Rgb> {
-        let [r, g, b, crossings] = self.0[e as usize];
+        let Sum([r, g, b, crossings]) = self.0[e as usize];
         let mean = |sum: f64| (sum / crossings) as f32;
         (crossings > 0.0).then(|| Rgb::new(mean(r), mean(g), mean(b)))
     }
@@ -93,8 +98,8 @@ pub fn gather(bundle: &Bundle, source: &Source, sums: &mut Sums) {
         bundle.crossings(tile, &mut found);
         // All pairs first, then all sums: the processor then waits for the memory of many elements at once.
         seen.clear();
-        for crossings in found.lists.iter() {
-            spans(lift, crossings.iter().copied(), |Span { from, to }| seen.push([from.or(nobody), to.or(nobody)]));
+        for crossings in found.iter() {
+            spans(lift, crossings, |Span { from, to }| seen.push([from.or(nobody), to.or(nobody)]));
         }
         for [from, to] in seen.iter().map(|ends| ends.map(|end| end as usize)) {
             see(&mut sums[from], source[to]);
@@ -105,7 +110,7 @@ pub fn gather(bundle: &Bundle, source: &Source, sums: &mut Sums) {
 
 /// Adds what one crossing sees.
 #[inline]
-fn see(sum: &mut [f64; 4], seen: [f32; 4]) {
+fn see(Sum(sum): &mut Sum, seen: [f32; 4]) {
     sum.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += f64::from(seen));
 }
 

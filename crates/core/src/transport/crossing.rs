@@ -1,10 +1,10 @@
 //! Where a line crosses a surface, and what it meets there from either side.
 
 use crate::Problem;
-use crate::geometry::{Along, Hit};
+use crate::geometry::Hit;
+use crate::geometry::raster::{Cross, Points};
 use crate::mesh::{ElementMesh, Lookup};
 use glam::Vec2;
-use std::cmp::Ordering;
 
 /// What lies at the end of a line, 4 bytes: an element, or a reason why there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -45,14 +45,6 @@ pub struct Crossing {
     pub far: End,
 }
 
-/// By distance.
-impl Along for Crossing {
-    #[inline]
-    fn order(&self, other: &Crossing) -> Ordering {
-        self.t.total_cmp(&other.t)
-    }
-}
-
 impl Crossing {
     /// The crossing that belongs to `hit`.
     pub fn of(problem: &Problem, hit: &Hit) -> Crossing {
@@ -72,7 +64,7 @@ pub struct Met<'a> {
 
 impl<'a> Met<'a> {
     /// `triangle`, met from behind or from the front.
-    #[inline]
+    #[inline(always)]
     pub fn new(mesh: &'a ElementMesh, triangle: u32, back: bool) -> Met<'a> {
         let lookup = mesh.lookup(triangle);
         let bits = |all: bool| if all { u32::MAX } else { 0 };
@@ -83,9 +75,37 @@ impl<'a> Met<'a> {
     /// Its crossing at distance `t` [m] and barycentric coordinates `uv`.
     #[inline]
     pub fn crossing(&self, t: f32, uv: Vec2) -> Crossing {
-        let (front, further) = self.lookup.front(uv);
+        self.at(t, self.lookup.front(uv))
+    }
+
+    #[inline(always)]
+    fn at(&self, t: f32, (front, further): (u32, u32)) -> Crossing {
         let end = |side: usize| End((front + (further & self.behind[side])) | self.black[side]);
         Crossing { t, near: end(0), far: end(1) }
+    }
+}
+
+impl Cross for ElementMesh {
+    type Crossing = Crossing;
+    const NONE: Crossing = Crossing { t: 0.0, near: End::ESCAPED, far: End::ESCAPED };
+
+    #[inline(always)]
+    fn cross(&self, points: &mut Points, crossings: &mut [Crossing]) {
+        let Points { triangles, t, u, v, x, y, patch, front, further } = points;
+        for met in *triangles {
+            let at = met.chunks();
+            let within = [&mut x[at.clone()], &mut y[at.clone()]];
+            self.patches_at(met.triangle, [&u[at.clone()], &v[at.clone()]], &mut patch[at], within);
+        }
+        self.fronts_at(patch, [x, y], front, further);
+        for met in *triangles {
+            let at = met.points.clone();
+            let ends = front[at.clone()].iter().zip(&further[at.clone()]);
+            let met = Met::new(self, met.triangle, met.back);
+            for ((crossing, &t), (&front, &further)) in crossings[at.clone()].iter_mut().zip(&t[at]).zip(ends) {
+                *crossing = met.at(t, (front, further));
+            }
+        }
     }
 }
 

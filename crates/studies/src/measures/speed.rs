@@ -68,7 +68,8 @@ fn looks(task: &mut Task, light: LightPart) -> Result<Option<Vec<Look>>, Error> 
     let Some(reference) = task.reference(Kind::WhereLanded(light))? else { return Ok(None) };
     let problem = task.problem()?;
     let method = task.series().method()?;
-    let settings = Settings { method, light, seed: task.point.seed, budget: Budget::Endless, ..Settings::default() };
+    let (budget, replicates, seed) = (Budget::Endless, method.natural_replicates(), task.point.seed);
+    let settings = Settings { method, light, seed, budget, replicates, ..Settings::default() };
     let mut looks = vec![NO_LOOK; (0..).take_while(|&k| place(k) <= task.point.at * 1.001).count()];
     let (mut stopwatch, mut drive) = (Stopwatch::new()?, Drive::new());
     let mut solver = stopwatch.time(|| MonteCarlo::new(&problem, settings))?;

@@ -1,4 +1,4 @@
-//! Lanes as AVX registers, on machines that have AVX2. The only unsafe code of the crate.
+//! Lanes as AVX registers, on machines that have AVX2. Here and in the raster's is the only unsafe code of the crate.
 #![allow(unsafe_code)]
 
 use super::lanes::{Instructions, Lanes};

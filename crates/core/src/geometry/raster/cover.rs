@@ -1,25 +1,31 @@
 //! Which points of a grid a triangle covers, exactly.
 //!
-//! Corners are rounded to 1/65,536 of a cell. The edge function of the edge from p to q,
+//! Corners are rounded to 1/65,536 of a cell. A row of the grid at height y lies between two edges of a triangle; the edge from
+//! p to q meets it at
 //!
 //! ```text
-//! E(x, y) = (qx - px) (y - py) - (qy - py) (x - px)        (Pineda, A Parallel Algorithm for Polygon Rasterization, 1988)
+//! x(y) = px + (y - py) (qx - px) / (qy - py)
 //! ```
 //!
-//! is then an integer below 2^62 and tells without any rounding on which side of the edge a point lies. A point *on* an edge
-//! belongs to the triangle if the edge is a left one, or a horizontal one with the triangle above it. For the triangle on the
-//! other side the same edge is a right one, or has it below: of two neighbours exactly one covers the point, and of all
-//! triangles around a corner exactly one covers the corner. So a line meets a closed surface neither twice at one place nor
-//! never.
+//! The triangle covers the columns from `ceil(x_left)` to before `ceil(x_right)`, in the rows from `ceil(y_lowest)` to before
+//! `ceil(y_highest)`. So a point *on* an edge belongs to the triangle if the edge is its left or lower one; for the triangle on
+//! the other side the same edge is a right or an upper one. Of two neighbours exactly one covers the point, and of all triangles
+//! around a corner exactly one covers the corner: a line meets a closed surface neither twice at one place nor never.
 //!
-//! Each edge bounds the covered points of a row on one side, by an integer division. Cost: three divisions a row. Depth and
-//! barycentric coordinates are interpolated along the row.
+//! In double precision x is right but for 2⁻³⁶ of a cell. Only where it is as near as that to a whole column, which is hardly ever
+//! but where corners lie on the points of the grid, an integer division decides. Cost: three divisions a triangle, then two
+//! multiplications a row for its ends. Depth and barycentric coordinates are interpolated along the row, for several points at
+//! once.
 
-use glam::Vec2;
+use crate::mesh::LANES;
 use std::ops::Range;
 
 /// Subcells along the edge of a cell; the points of the grid have whole cells as coordinates.
 pub const SUBCELLS: i64 = 1 << 16;
+/// Where edges meet rows is known to better than this [cells].
+const ROUNDING: f64 = 1.0 / (1u64 << 34) as f64;
+/// Added to a number, it leaves no bits behind the point, and a small number's integer in the last bits.
+const WHOLE: f64 = 1.5 * (1u64 << 52) as f64;
 
 /// A point in the space of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,76 +59,92 @@ impl Projected {
         Projected { x: corners.map(|corner| corner.x), y: corners.map(|corner| corner.y), depth }
     }
 
-    /// Columns and rows, of a grid of `cells` by `cells`, of the box around the triangle.
+    /// Columns and rows, of a grid of `cells` by `cells`, outside of which it covers nothing.
     #[inline]
     pub fn bounds(&self, cells: u32) -> [Range<u32>; 2] {
-        let range = |corners: [i32; 3]| {
-            let [a, b, c] = corners.map(i64::from);
-            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-            let column = |k: i64| k.clamp(0, i64::from(cells)) as u32;
-            column(-(-low).div_euclid(SUBCELLS))..column(high.div_euclid(SUBCELLS) + 1)
+        let range = |[a, b, c]: [i32; 3]| {
+            let whole = |k: i32| ceil(k).clamp(0, cells as i32) as u32;
+            whole(a.min(b).min(c))..whole(a.max(b).max(c))
         };
         [range(self.x), range(self.y)]
     }
 
     /// Which points it covers; `None` if it is seen edge-on and covers none.
-    #[inline]
+    #[inline(always)]
     pub fn coverage(&self) -> Option<Coverage> {
-        let [a, b, c] = [0, 1, 2].map(|k| [i64::from(self.x[k]), i64::from(self.y[k])]);
+        let corners = [0, 1, 2].map(|k| [i64::from(self.x[k]), i64::from(self.y[k])]);
+        let [a, b, c] = corners;
+        let (ab, ac) = (from(a, b), from(a, c));
         // Counter-clockwise in a frame that looks along the lines: they leave through the front.
-        let area = Edge::new(a, b).at_subcell(c);
-        let back = area > 0;
-        let edges = |ends: [[[i64; 2]; 2]; 3]| ends.map(|[p, q]| Edge::new(p, q));
+        let area = cross(ab, ac);
+        if area == 0 {
+            return None;
+        }
+        let share = 1.0 / area as f32;
+        let weight =
+            |[dx, dy]: [i64; 2]| Weight { at_zero: cross([dx, dy], a), dx: dx * SUBCELLS, dy: dy * SUBCELLS, share };
         let [first, second, third] = self.depth;
-        (area != 0).then(|| Coverage {
-            back,
-            edges: edges(if back { [[b, c], [c, a], [a, b]] } else { [[c, b], [a, c], [b, a]] }),
-            share: 1.0 / area.abs() as f32,
+        Some(Coverage {
+            back: area > 0,
+            halves: halves(corners),
+            weights: [weight([-ac[0], -ac[1]]), weight(ab)],
             depth: [first, second - first, third - first],
         })
     }
 }
 
+/// Whole cells at or after so many subcells.
+#[inline(always)]
+fn ceil(subcells: i32) -> i32 {
+    (subcells + (SUBCELLS as i32 - 1)) >> SUBCELLS.trailing_zeros()
+}
+
+#[inline(always)]
+fn from([px, py]: [i64; 2], [qx, qy]: [i64; 2]) -> [i64; 2] {
+    [qx - px, qy - py]
+}
+
+#[inline(always)]
+fn cross([ax, ay]: [i64; 2], [bx, by]: [i64; 2]) -> i64 {
+    ax * by - ay * bx
+}
+
 /// The points of a grid that a triangle covers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Coverage {
     /// Whether lines meet its back.
     pub back: bool,
-    /// The edges opposite its corners, with the triangle on the left.
-    edges: [Edge; 3],
-    /// One over twice its area, the greatest value of each edge function [1/subcells²].
-    share: f32,
+    /// Below and above the middle corner.
+    pub halves: [Half; 2],
+    /// Of the second and the third corner.
+    weights: [Weight; 2],
     /// Depth [m] of the first corner, and what the others lie beyond it.
     depth: [f32; 3],
 }
 
 impl Coverage {
-    /// What it covers of `row`, within these columns, if it is anything.
-    #[inline]
-    pub fn row(&self, row: u32, columns: &Range<u32>) -> Option<Row> {
-        let all = i64::from(columns.start)..i64::from(columns.end);
-        let covered = self.edges.iter().fold(all, |columns, edge| edge.clip(row, columns));
-        if covered.is_empty() {
-            return None;
-        }
-        let [_, of_u, of_v] = &self.edges;
-        let weight = |edge: &Edge| edge.at(covered.start, row) as f32 * self.share;
-        let growth = |edge: &Edge| edge.per_column as f32 * self.share;
-        Some(Row {
-            first: covered.start as u32,
-            length: (covered.end - covered.start) as u32,
-            start: [weight(of_u), weight(of_v)],
-            growth: [growth(of_u), growth(of_v)],
+    /// What it covers of `row`, one of those of `half`, within these columns; it may be nothing.
+    #[inline(always)]
+    pub fn row(&self, half: &Half, row: i32, columns: &Range<i32>) -> Row {
+        let first = half.left.column(row).max(columns.start);
+        let end = half.right.column(row).min(columns.end);
+        Row {
+            row,
+            first,
+            length: (end - first).max(0) as u32,
+            start: self.weights.map(|weight| weight.at(first, row)),
+            growth: self.weights.map(|weight| weight.growth()),
             depth: self.depth,
-        })
+        }
     }
 }
 
 /// Neighbouring points of a row that a triangle covers.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
+    pub row: i32,
     /// Column of the first, and how many there are.
-    pub first: u32,
+    pub first: i32,
     pub length: u32,
     /// Barycentric coordinates of the first, and what they grow from one to the next.
     start: [f32; 2],
@@ -131,61 +153,114 @@ pub struct Row {
 }
 
 impl Row {
-    /// Distance [m] at which the line of the k-th of the points meets the triangle, and the barycentric coordinates there.
+    /// Where the lines of [`LANES`] points from the k-th on meet the triangle: distances [m], and barycentric coordinates u and v.
+    /// Beyond the end of the row they mean nothing, but lie on the triangle too.
     #[inline(always)]
-    pub fn at(&self, k: u32) -> (f32, Vec2) {
-        let weight = |coordinate: usize| self.start[coordinate] + k as f32 * self.growth[coordinate];
-        // Rounding must not lead out of the triangle.
-        let u = weight(0).clamp(0.0, 1.0);
-        let v = weight(1).max(0.0).min(1.0 - u);
-        (self.depth[0] + u * self.depth[1] + v * self.depth[2], Vec2::new(u, v))
+    pub fn points(&self, k: i32) -> [[f32; LANES]; 3] {
+        let [mut t, mut u, mut v] = [[0.0; LANES]; 3];
+        for lane in 0..LANES {
+            let column = (k + lane as i32) as f32;
+            let weight = |corner: usize| self.start[corner] + column * self.growth[corner];
+            // Rounding must not lead out of the triangle.
+            u[lane] = between(weight(0), 1.0);
+            v[lane] = between(weight(1), 1.0 - u[lane]);
+            t[lane] = self.depth[0] + u[lane] * self.depth[1] + v[lane] * self.depth[2];
+        }
+        [t, u, v]
     }
 }
 
-/// The edge function of a directed edge at the points of the grid; positive to the left of it.
+/// The nearest number from zero to `most`.
+#[inline(always)]
+fn between(x: f32, most: f32) -> f32 {
+    let x = if x > 0.0 { x } else { 0.0 };
+    if x < most { x } else { most }
+}
+
+/// The part of a triangle above its lowest corner, or that below its highest one.
+#[derive(Clone, Debug)]
+pub struct Half {
+    pub rows: Range<i32>,
+    left: Border,
+    right: Border,
+}
+
+/// Both halves of the triangle with these corners, the lower one first.
+#[inline(always)]
+fn halves(corners: [[i64; 2]; 3]) -> [Half; 2] {
+    // Corners in the order of their heights: numbers are chosen, for branches would be guessed wrong.
+    let [a, b, c] = [0, 1, 2].map(|k| corners[k as usize][1] << 2 | k);
+    let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
+    let [low, middle, high] = [lowest, a + b + c - lowest - highest, highest].map(|key| corners[(key & 3) as usize]);
+    let (long, lower, upper) = (Border::new(low, high), Border::new(low, middle), Border::new(middle, high));
+    let long_is_left = cross(from(low, high), from(low, middle)) < 0;
+    let half = |short, rows| {
+        let (left, right) = if long_is_left { (long, short) } else { (short, long) };
+        Half { rows, left, right }
+    };
+    let [first, between, end] = [low, middle, high].map(|corner| ceil(corner[1] as i32));
+    [half(lower, first..between), half(upper, between..end)]
+}
+
+/// An edge that bounds what is covered of a row.
 #[derive(Clone, Copy, Debug)]
-struct Edge {
-    at_zero: i64,
-    per_column: i64,
-    per_row: i64,
-    /// Least value of the points that belong to the triangle on the left: 0 if it owns the edge, or else 1.
-    least: i64,
+struct Border {
+    /// The lower end, and the way to the upper one [subcells].
+    start: [i64; 2],
+    way: [i64; 2],
+    /// Columns for each row.
+    slope: f64,
 }
 
-impl Edge {
+impl Border {
     #[inline(always)]
-    fn new([px, py]: [i64; 2], [qx, qy]: [i64; 2]) -> Edge {
-        let (dx, dy) = (qx - px, qy - py);
-        let owned = dy < 0 || (dy == 0 && dx > 0);
-        Edge {
-            at_zero: dy * px - dx * py,
-            per_column: -dy * SUBCELLS,
-            per_row: dx * SUBCELLS,
-            least: i64::from(!owned),
-        }
+    fn new(low: [i64; 2], high: [i64; 2]) -> Border {
+        let way = from(low, high);
+        Border { start: low, way, slope: way[0] as f64 / way[1] as f64 }
     }
 
+    /// The first column at or after the edge in `row`, one of those between its ends.
     #[inline(always)]
-    fn at(&self, column: i64, row: u32) -> i64 {
-        self.at_zero + self.per_column * column + self.per_row * i64::from(row)
+    fn column(&self, row: i32) -> i32 {
+        const CELL: f64 = 1.0 / SUBCELLS as f64;
+        let [x, y] = self.start.map(|subcells| subcells as i32 as f64 * CELL);
+        // Half a cell on, the nearest column is the one at or after x.
+        let x = x + (f64::from(row) - y) * self.slope + 0.5;
+        let rounded = x + WHOLE;
+        let beyond = x - (rounded - WHOLE);
+        if beyond.abs() < 0.5 - ROUNDING { rounded.to_bits() as i32 } else { self.exact_column(row) }
     }
 
+    #[cold]
+    fn exact_column(&self, row: i32) -> i32 {
+        let ([px, py], [dx, dy]) = (self.start, self.way);
+        let across = px * dy + (i64::from(row) * SUBCELLS - py) * dx;
+        -(-across).div_euclid(dy * SUBCELLS) as i32
+    }
+}
+
+/// The barycentric coordinate of a corner: the edge function of the edge opposite to it over that of the corner itself (Pineda,
+/// A Parallel Algorithm for Polygon Rasterization, 1988).
+#[derive(Clone, Copy, Debug)]
+struct Weight {
+    at_zero: i64,
+    /// The edge [subcells / cell].
+    dx: i64,
+    dy: i64,
+    /// One over twice the area of the triangle [1/subcells²].
+    share: f32,
+}
+
+impl Weight {
     #[inline(always)]
-    fn at_subcell(&self, [x, y]: [i64; 2]) -> i64 {
-        self.at_zero + self.per_column / SUBCELLS * x + self.per_row / SUBCELLS * y
+    fn at(&self, column: i32, row: i32) -> f32 {
+        (self.dx * i64::from(row) - self.dy * i64::from(column) - self.at_zero) as f32 * self.share
     }
 
-    /// Those of the `columns` of `row` that lie on the left of the edge, or on it if it is owned.
+    /// From one column to the next.
     #[inline(always)]
-    fn clip(&self, row: u32, Range { start, end }: Range<i64>) -> Range<i64> {
-        // The condition is per_column * column >= lacking.
-        let lacking = self.least - self.at(0, row);
-        match self.per_column {
-            0 if lacking > 0 => start..start,
-            0 => start..end,
-            growth if growth > 0 => start.max(-(-lacking).div_euclid(growth))..end,
-            growth => start..end.min((-lacking).div_euclid(-growth) + 1),
-        }
+    fn growth(&self) -> f32 {
+        -self.dy as f32 * self.share
     }
 }
 
@@ -194,6 +269,7 @@ mod tests {
     use super::*;
     use crate::geometry::Hit;
     use crate::math::hash::mix;
+    use glam::Vec2;
 
     const CELLS: u32 = 16;
 
@@ -204,13 +280,20 @@ mod tests {
     /// The points in these ranges that a triangle covers, and the hits of their lines.
     fn hits(triangle: &Projected, [columns, rows]: [Range<u32>; 2]) -> Vec<(u32, u32, Hit)> {
         let Some(coverage) = triangle.coverage() else { return Vec::new() };
-        let hits = |row| {
-            let hit = move |(t, uv)| Hit { t, triangle: 0, uv, back: coverage.back };
-            let covered = coverage.row(row, &columns).into_iter();
-            covered
-                .flat_map(move |covered| (0..covered.length).map(move |k| (covered.first + k, row, hit(covered.at(k)))))
-        };
-        rows.flat_map(hits).collect()
+        let mut hits = Vec::new();
+        let [columns, rows] = [columns, rows].map(|range| range.start as i32..range.end as i32);
+        for half in &coverage.halves {
+            for row in half.rows.clone().filter(|row| rows.contains(row)) {
+                let row = coverage.row(half, row, &columns);
+                for k in 0..row.length {
+                    let [t, u, v] = row.points((k / LANES as u32 * LANES as u32) as i32);
+                    let (lane, back) = (k as usize % LANES, coverage.back);
+                    let hit = Hit { t: t[lane], triangle: 0, uv: Vec2::new(u[lane], v[lane]), back };
+                    hits.push((row.first as u32 + k, row.row as u32, hit));
+                }
+            }
+        }
+        hits
     }
 
     /// How often each point of the grid is covered.

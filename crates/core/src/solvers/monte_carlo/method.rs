@@ -175,6 +175,11 @@ impl Method {
         (self.order.entry().natural_address)(self)
     }
 
+    /// Complete solutions in a round that suit its order.
+    pub fn natural_replicates(&self) -> u32 {
+        self.order.entry().natural_replicates
+    }
+
     /// Whether light of many lines is pooled on the elements before it leaves: everything but the random walk.
     pub fn pools(&self) -> bool {
         (self.order.entry().pools)(self.lines)

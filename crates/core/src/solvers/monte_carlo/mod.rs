@@ -118,7 +118,8 @@ impl MonteCarlo {
     /// Takes a finished complete solution into the estimate and starts the next one.
     fn next_replicate(&mut self, problem: &Problem) {
         let complete = self.complete.as_ref();
-        self.replicates.push(complete.rays(), problem.mesh.elements().map(|e| complete.irradiance(problem, e)));
+        let irradiance = problem.mesh.elements().map(|e| complete.irradiance(problem, e));
+        self.replicates.push(complete.rays(), irradiance, |e| problem.mesh.area(e));
         self.experience = complete.experience();
         self.balance = self.balance + complete.balance();
         self.replicate += 1;

@@ -17,14 +17,15 @@ use std::ops::Range;
 pub const COST: f64 = 1.0 / 8.0;
 /// Complete solutions that have enough directions together.
 const COMPLETE_SOLUTIONS: f64 = 8.0;
-/// Pieces of all bundles, and pieces in flight: every piece has sums of its own.
-const PIECES: u64 = 16;
+/// Most pieces of all bundles, and pieces in flight: every piece has sums of its own.
+const MOST_PIECES: u64 = 16;
 const IN_FLIGHT: u64 = 4;
 
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bundles {
     count: u64,
     cells: u32,
+    pieces: u64,
     absorbed: u64,
     source: Source,
     sums: Sums,
@@ -46,6 +47,9 @@ impl Bundles {
         (self.count, self.cells) = bundles_of(problem, rays as f64);
         self.absorbed = 0;
         let crossings = self.count as f64 * crossings_per_area(problem, self.cells);
+        // Adding up sums costs time for each element and piece.
+        let crossings_of_element = crossings * problem.mesh.total_area() / problem.mesh.len() as f64;
+        self.pieces = (crossings_of_element as u64).clamp(1, MOST_PIECES);
         self.precision = known(self.count as f64, crossings);
         if self.count > 0 {
             self.source = Source::new(problem, |e| light.reflected_radiosity(&problem.mesh, e));
@@ -58,7 +62,7 @@ impl Bundles {
     }
 
     fn all_pieces(&self) -> u64 {
-        self.count.min(PIECES)
+        self.count.min(self.pieces)
     }
 
     /// Gathers along the bundles of `piece`.

@@ -12,6 +12,9 @@ use crate::solvers::monte_carlo::relaxation::Relaxation;
 use crate::solvers::{Part, gathering, shooting};
 use std::ops::Range;
 
+/// Elements by which the lines are shared out, about.
+const SAMPLE: usize = 4096;
+
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Local {
     allocation: Allocation,
@@ -26,7 +29,8 @@ impl Local {
         shot.light_mut().show(&problem.mesh);
         (self.absorbed, self.known) = (0, known);
         let area = |e| f64::from(problem.mesh.area(e));
-        let limit = known.limit(problem.mesh.elements().map(area), rays as f64);
+        let every = problem.mesh.len().div_ceil(SAMPLE);
+        let limit = known.limit(problem.mesh.elements().step_by(every).map(area), rays as f64 / every as f64);
         let lacking = |e| (limit - known.lines(area(e))).max(0.0);
         let all = problem.mesh.elements().map(lacking).sum();
         let weights = problem.mesh.elements().map(|e| (e, lacking(e)));

@@ -13,6 +13,7 @@ pub(super) const ENTRY: Entry = Entry {
     source: "isolux",
     pools: |_| true,
     natural_address: |_| Address::PerIteration,
+    natural_replicates: 8,
     tells_light_apart: |_| true,
     check,
     make: |problem, settings| Box::new(Auto::new(problem, settings)),

@@ -13,6 +13,7 @@ pub(super) const ENTRY: Entry = Entry {
     source: "Shirley 1991",
     pools: |_| true,
     natural_address: |_| Address::PerIteration,
+    natural_replicates: 16,
     tells_light_apart: |_| true,
     check: |_| Ok(()),
     make: |problem, settings| Box::new(Relaxation::new(problem, settings, course())),

@@ -23,6 +23,7 @@ pub(super) const ENTRY: Entry = Entry {
     pools: |lines| lines != Lines::Local,
     natural_address,
     // Multipath does so if the first shot is apart; a walk scores all its visits together.
+    natural_replicates: 16,
     tells_light_apart: |method| method.lines != Lines::Local && method.first_shot == FirstShot::Local,
     check,
     make: |problem, settings| match settings.method.lines {

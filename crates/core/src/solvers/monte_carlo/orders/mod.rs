@@ -32,6 +32,8 @@ pub struct Entry {
     pub(super) pools: fn(Lines) -> bool,
     /// The address that suits a method of this order.
     pub(super) natural_address: fn(&Method) -> Address,
+    /// Complete solutions in a round: more tell the error better, fewer are better themselves.
+    pub(super) natural_replicates: u32,
     /// Whether it knows direct from reflected light to the end.
     pub(super) tells_light_apart: fn(&Method) -> bool,
     /// Refuses what has no meaning with this order, with [`Error::Meaningless`].

@@ -17,6 +17,7 @@ pub(super) const ENTRY: Entry = Entry {
     source: "Feda & Purgathofer 1993",
     pools: |_| true,
     natural_address: |_| Address::PerIteration,
+    natural_replicates: 16,
     tells_light_apart: |_| true,
     check: |_| Ok(()),
     make: |problem, settings| {

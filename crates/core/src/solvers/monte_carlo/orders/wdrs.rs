@@ -31,6 +31,7 @@ pub(super) const ENTRY: Entry = Entry {
     source: "Neumann, Neumann, Bekaert et al. 1997",
     pools: |_| true,
     natural_address: |_| Address::PerElement,
+    natural_replicates: 16,
     tells_light_apart: |_| false,
     check,
     make: |problem, settings| Box::new(Wdrs::new(problem, settings)),
