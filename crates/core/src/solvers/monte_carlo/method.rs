@@ -53,15 +53,6 @@ const PARTICLES: Method = Method { walk: Walk::Continuous, address: Address::Per
 /// All methods with a name. The first is the default.
 pub const METHODS: &[NamedMethod] = &[
     NamedMethod {
-        name: "auto",
-        what: [
-            "shoots a part of the rays, then looks for the lights from each element and",
-            "gathers along fast bundles of lines; small elements along rays of their own",
-        ],
-        source: "isolux",
-        method: of_order(OrderName::AUTO),
-    },
-    NamedMethod {
         name: "stochastic-jacobi",
         what: [
             "shoots light until none is left, shoots the whole once more, and gathers",
@@ -69,6 +60,15 @@ pub const METHODS: &[NamedMethod] = &[
         ],
         source: "Neumann et al. 1995; Bekaert 1999",
         method: STOCHASTIC_JACOBI,
+    },
+    NamedMethod {
+        name: "auto",
+        what: [
+            "shoots a part of the rays, then looks for the lights from each element and",
+            "gathers along fast bundles of lines; small elements along rays of their own",
+        ],
+        source: "isolux",
+        method: of_order(OrderName::AUTO),
     },
     NamedMethod {
         name: "stochastic-ray",

@@ -1,6 +1,6 @@
 //! What elements gather along bundles of global lines ([`bundle_gather`](crate::transport::bundle_gather)), merged with what was shot.
 //!
-//! Memory: 64 bytes an element, and 32 more for each piece in flight, of which there are four at most.
+//! Memory while bundles gather: 48 bytes an element, and 32 more for each piece in flight, of which there are four at most.
 
 use super::indirect::Precision;
 use crate::Problem;
