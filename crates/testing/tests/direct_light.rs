@@ -341,7 +341,7 @@ fn rounds_are_unbiased_and_uncorrelated() {
 fn neighbours_choose_the_share_that_suits_them() {
     let problem = problem("box", 3000);
     let light = rounds(&problem, 1, 2, |_, _| {});
-    let mut shares: Vec<f32> = problem.mesh.elements().map(|e| light.cosine_share(e)).collect();
+    let mut shares: Vec<f32> = problem.mesh.elements().map(|e| light.neighbours().cosine_share(e)).collect();
     shares.sort_by(f32::total_cmp);
     shares.dedup();
     assert!(shares.len() > 1, "some need light rays, some cosine rays: {shares:?}");

@@ -133,7 +133,7 @@ fn adaptive(problem: &Problem, rays: u32, seed: u64) -> Result<(Vec<Rgb>, u64)> 
     for round in 0..=ROUNDS {
         for piece in 0..light.pieces() {
             let received = light.piece(problem, piece);
-            traced += received.iter().map(|received| u64::from(received.rays)).sum::<u64>();
+            traced += received.iter().map(|received| u64::from(received.traced)).sum::<u64>();
             light.merge(problem, piece, &received, |e, irradiance, _| sum[e as usize] += irradiance);
             light.learn(piece, &received);
         }

@@ -6,7 +6,7 @@
 
 use crate::Problem;
 use crate::solvers::Part;
-use crate::solvers::direct_light::DirectLight;
+use crate::solvers::direct_light::{DirectLight, Neighbours};
 use crate::solvers::monte_carlo::Settings as Run;
 use crate::solvers::monte_carlo::relaxation::Relaxation;
 use std::ops::Range;
@@ -24,14 +24,14 @@ pub struct Direct {
 }
 
 impl Direct {
-    /// What rays are worth, as far as they were tried.
-    pub fn light(&self) -> Option<&DirectLight> {
-        self.tried.then_some(&self.light)
-    }
-
     pub fn new(problem: &Problem, run: &Run) -> Direct {
         let light = DirectLight::new(problem, run.seed, run.method.sequence);
         Direct { light, rays: 0, ray_flux: 0.0, tried: false, absorbed: 0 }
+    }
+
+    /// What rays are worth, if they were tried.
+    pub fn learned(&self) -> Option<&Neighbours> {
+        self.tried.then_some(self.light.neighbours())
     }
 
     /// Begins the round of a complete solution, with so many rays, after rays of so much flux [lm] have shot.
@@ -55,7 +55,7 @@ impl Direct {
 
     pub fn part(&self, problem: &Problem, piece: u64) -> Part {
         let received = self.light.piece(problem, piece);
-        let rays = received.iter().map(|received| u64::from(received.rays)).sum();
+        let rays = received.iter().map(|received| u64::from(received.traced)).sum();
         Part { received, rays, ..Part::default() }
     }
 

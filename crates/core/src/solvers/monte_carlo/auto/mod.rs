@@ -127,7 +127,7 @@ impl Auto {
 
     /// The best plan by what is known, or a careful one.
     fn plan_of(&self, problem: &Problem, rays: u64, experience: &Experience) -> Plan {
-        match self.direct.light() {
+        match self.direct.learned() {
             _ if rays < FEWEST_RAYS * problem.mesh.len() as u64 => Plan::only_shooting(rays),
             None => Plan::careful(rays),
             Some(direct) => {

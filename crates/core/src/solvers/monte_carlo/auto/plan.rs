@@ -8,7 +8,7 @@ use super::bundles::bundles_of;
 use super::indirect::Indirect;
 use super::ray_flux;
 use crate::Problem;
-use crate::solvers::direct_light::DirectLight;
+use crate::solvers::direct_light::Neighbours;
 use crate::solvers::monte_carlo::Experience;
 use crate::transport::bundle::crossings_per_area;
 
@@ -54,7 +54,7 @@ impl Plan {
         problem: &Problem,
         rays: u64,
         experience: &Experience,
-        direct: Option<&DirectLight>,
+        direct: Option<&Neighbours>,
         indirect: &Indirect,
     ) -> Plan {
         let mesh = &problem.mesh;
@@ -64,7 +64,7 @@ impl Plan {
         let share = 1.0 / every as f64;
         let variance_of_direct = |plan: &Plan, ray_flux: f64| {
             direct.map_or(0.0, |direct| {
-                direct.expected_variance(problem, sample.clone(), plan.direct as f64 * share, ray_flux)
+                direct.expected_variance(mesh, sample.clone(), plan.direct as f64 * share, ray_flux)
             })
         };
         let variance_of_indirect = |plan: &Plan, ray_flux: f64| {
