@@ -55,7 +55,11 @@ pub struct Auto {
     wanted: LightPart,
     seed: u64,
     phase: Phase,
+    /// Luminous flux of all lights [lm].
+    emitted: f64,
+    /// The running plan, and for how many rays it was made.
     plan: Plan,
+    planned_for: u64,
     /// Flux [lm] of the rays that have shot.
     ray_flux: f64,
     /// Rays, or what costs as much, of the phases after shooting.
@@ -77,7 +81,9 @@ impl Auto {
             wanted: settings.light,
             seed: settings.seed,
             phase: Phase::Done,
+            emitted: sources::total(problem),
             plan: Plan::default(),
+            planned_for: 0,
             ray_flux: 0.0,
             rays_after: 0,
             shooting: Relaxation::new(problem, settings, Course::new(&stages)),
@@ -92,7 +98,9 @@ impl Auto {
     fn next_phase(&mut self, problem: &Problem) {
         self.phase = match self.phase {
             Phase::Shooting => {
-                self.ray_flux = ray_flux(problem, self.shooting.rays() as f64, &self.shooting.experience());
+                // All rays carry about the same.
+                let reflected_share = self.shooting.experience().reflected_share;
+                self.ray_flux = self.emitted * (1.0 + reflected_share) / self.shooting.rays().max(1) as f64;
                 self.direct.begin(problem, self.plan.direct, self.ray_flux);
                 Phase::Direct
             }
@@ -125,14 +133,17 @@ impl Auto {
         }
     }
 
-    /// The best plan by what is known, or a careful one.
-    fn plan_of(&self, problem: &Problem, rays: u64, experience: &Experience) -> Plan {
+    /// Makes the best plan by what is known, or a careful one. It stays for all complete solutions of as many rays.
+    fn plan_for(&mut self, problem: &Problem, rays: u64, experience: &Experience) {
         match self.direct.learned() {
-            _ if rays < FEWEST_RAYS * problem.mesh.len() as u64 => Plan::only_shooting(rays),
-            None => Plan::careful(rays),
+            _ if rays == self.planned_for => {}
+            _ if rays < FEWEST_RAYS * problem.mesh.len() as u64 => self.plan = Plan::only_shooting(rays),
+            None => self.plan = Plan::careful(rays),
             Some(direct) => {
+                let power = self.emitted * (1.0 + experience.reflected_share);
                 let direct = (self.wanted == LightPart::All).then_some(direct);
-                Plan::best(problem, rays, experience, direct, &self.indirect)
+                self.plan = Plan::best(problem, rays, power, direct, &self.indirect);
+                self.planned_for = rays;
             }
         }
     }
@@ -143,17 +154,12 @@ impl Auto {
     }
 }
 
-/// Flux [lm] of each of `rays` rays that shoot all emitted and all reflected light: they all carry about the same.
-fn ray_flux(problem: &Problem, rays: f64, experience: &Experience) -> f64 {
-    sources::total(problem) * (1.0 + experience.reflected_share) / rays.max(1.0)
-}
-
 #[typetag::serde]
 impl CompleteSolution for Auto {
     fn restart(&mut self, problem: &Problem, seed: u64, rays: u64, experience: &Experience) {
         self.seed = seed;
         self.rays_after = 0;
-        self.plan = self.plan_of(problem, rays, experience);
+        self.plan_for(problem, rays, experience);
         self.phase = Phase::Shooting;
         self.shooting.restart(problem, seed, self.plan.shooting, experience);
         if self.pieces_of_phase().is_empty() {

@@ -6,18 +6,17 @@
 
 use super::bundles::bundles_of;
 use super::indirect::Indirect;
-use super::ray_flux;
 use crate::Problem;
 use crate::solvers::direct_light::Neighbours;
-use crate::solvers::monte_carlo::Experience;
 use crate::transport::bundle::crossings_per_area;
 
 /// Parts into which the rays are shared.
 const PARTS: u32 = 10;
 /// Elements that are looked at, about.
 const SAMPLE: usize = 400;
-/// A ray that looks for a light takes as long as so many others.
+/// A ray that looks for a light, and one that gathers, take as long as so many that shoot.
 const COST_OF_LOOKING: f64 = 2.0;
+const COST_OF_GATHERING: f64 = 2.0;
 
 /// Rays of each phase, or for bundles what costs as much.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -45,18 +44,12 @@ impl Plan {
             shooting: shooting as u64,
             direct: (direct / COST_OF_LOOKING) as u64,
             bundles: bundles as u64,
-            local: local as u64,
+            local: (local / COST_OF_GATHERING) as u64,
         }
     }
 
-    /// The best plan for `rays` rays; without `direct`, if only indirect light is wanted.
-    pub fn best(
-        problem: &Problem,
-        rays: u64,
-        experience: &Experience,
-        direct: Option<&Neighbours>,
-        indirect: &Indirect,
-    ) -> Plan {
+    /// The best plan for `rays` rays, where all light that is shot is `power` [lm]; without `direct`, if only indirect light is wanted.
+    pub fn best(problem: &Problem, rays: u64, power: f64, direct: Option<&Neighbours>, indirect: &Indirect) -> Plan {
         let mesh = &problem.mesh;
         let every = mesh.len().div_ceil(SAMPLE);
         let sample = mesh.elements().step_by(every);
@@ -75,7 +68,7 @@ impl Plan {
         };
         let expected = |parts: &[u32; 4]| {
             let plan = Plan::of_parts(rays, *parts);
-            let ray_flux = ray_flux(problem, plan.shooting as f64, experience);
+            let ray_flux = power / plan.shooting as f64;
             variance_of_direct(&plan, ray_flux) + variance_of_indirect(&plan, ray_flux)
         };
         let best = shares().map(|parts| (expected(&parts), parts)).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -108,6 +101,6 @@ mod tests {
         // Ten parts in four places, but for those without shooting: C(13, 3) - C(12, 2).
         assert_eq!((all.len(), sorted.len()), (220, 220));
         let Plan { shooting, direct, bundles, local } = Plan::of_parts(1000, [4, 3, 2, 1]);
-        assert_eq!([shooting, direct, bundles, local], [400, 150, 200, 100]);
+        assert_eq!([shooting, direct, bundles, local], [400, 150, 200, 50]);
     }
 }
