@@ -338,16 +338,6 @@ fn rounds_are_unbiased_and_uncorrelated() {
 }
 
 #[test]
-fn neighbours_choose_the_share_that_suits_them() {
-    let problem = problem("box", 3000);
-    let light = rounds(&problem, 1, 2, |_, _| {});
-    let mut shares: Vec<f32> = problem.mesh.elements().map(|e| light.neighbours().cosine_share(e)).collect();
-    shares.sort_by(f32::total_cmp);
-    shares.dedup();
-    assert!(shares.len() > 1, "some need light rays, some cosine rays: {shares:?}");
-}
-
-#[test]
 fn pieces_are_pure_and_resumed_rounds_go_on() {
     let problem = problem("cornell-box", 3000);
     let mut light = rounds(&problem, 1, 1, |_, _| {});

@@ -61,3 +61,38 @@ impl Comparison {
         (self.square - subtracted) * RAYS as f32
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+    use crate::transport::Spot;
+
+    /// Variances with few and with many cosine rays, told by ten rays of each kind: `seen` of them, whether they are light rays, and the
+    /// densities of their directions among light rays and cosine rays.
+    fn variances(seen: &[(usize, bool, f32, f32)]) -> [f32; 2] {
+        let sent = Rays { light: 10, cosine: 10 };
+        [0.0625, 0.875].map(|share| {
+            let mut comparison = Comparison::new(share, 20);
+            for &(times, aimed, light, cosine) in seen {
+                let sight = Sight { spot: Spot::default(), emission: Rgb::grey(1.0), light, cosine, aimed };
+                (0..times).for_each(|_| comparison.add(&sight, sight.irradiance(sent).luminance()));
+            }
+            comparison.variance()
+        })
+    }
+
+    #[test]
+    fn where_all_emits_alike_cosine_rays_are_best() {
+        // Two halves of the hemisphere; nine of ten light rays go to one of them.
+        let [few, many] =
+            variances(&[(5, false, 0.9, 0.5), (5, false, 0.1, 0.5), (9, true, 0.9, 0.5), (1, true, 0.1, 0.5)]);
+        assert!(many < 0.5 * few, "{few} {many}");
+    }
+
+    #[test]
+    fn where_there_is_one_lamp_light_rays_are_best() {
+        let [few, many] = variances(&[(10, true, 1.0, 0.01)]);
+        assert!(few < many, "{few} {many}");
+    }
+}
