@@ -91,9 +91,44 @@ impl Allocation {
     }
 }
 
+/// Elements, about, that stand for all where only their sum matters.
+pub const SAMPLE: usize = 4096;
+
+/// The level from which `wanted(level)`, which grows from 0, is `target`, to a millionth; 0 for no target, and a very large
+/// number if it is never reached. Twice as much of everything gives twice the level, bit for bit.
+pub fn level(wanted: impl Fn(f64) -> f64, target: f64) -> f64 {
+    if target <= 0.0 {
+        return 0.0;
+    }
+    let mut high = 1.0;
+    while wanted(high) < target && high < 1e30 {
+        high *= 2.0;
+    }
+    while wanted(0.5 * high) >= target && high > 1e-30 {
+        high *= 0.5;
+    }
+    let mut low = 0.5 * high;
+    while high - low > 1e-6 * high {
+        let middle = 0.5 * (low + high);
+        if wanted(middle) > target { high = middle } else { low = middle }
+    }
+    high
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn levels_are_found_on_any_scale() {
+        for exact in [1e-9, 0.3, 1.0, 7e5] {
+            let found = level(|level| 3.0 * level, 3.0 * exact);
+            assert!((found / exact - 1.0).abs() < 2e-6, "{found} instead of {exact}");
+        }
+        assert_eq!(level(|level| level.sqrt(), 0.3 * 1024.0), level(|level| level.sqrt(), 0.3) * 1024.0 * 1024.0);
+        assert_eq!(level(|level| level, 0.0), 0.0);
+        assert!(level(|_| 0.0, 1.0) > 1e29);
+    }
 
     fn weights() -> Vec<f64> {
         (0..1000).map(|k| f64::from(k % 7) * 0.01 + if k == 500 { 3.0 } else { 0.0 }).collect()

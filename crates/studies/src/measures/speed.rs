@@ -2,7 +2,7 @@
 //!
 //! `at` is the time [s] that a run is given; its error is looked at after 1/4 s and at each doubling, which is a place of its own.
 //! Seconds are processor time. Looking is not counted, nor are reading the scene and building the ray structure. Runs are as users
-//! have them: rounds of 16 complete solutions, an error bar for each element, light leaves from where it landed. Errors are those of
+//! have them: rounds of as many complete solutions as suit the method, an error bar for each element, light leaves from where it landed. Errors are those of
 //! [`Reference::errors`](crate::reference::Reference::errors). Reflected light has a run of its own, where the method can tell it.
 
 use super::Measure;

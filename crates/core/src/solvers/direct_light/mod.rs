@@ -22,6 +22,7 @@ use crate::Problem;
 use crate::math::Rgb;
 use crate::math::hash::derive;
 use crate::sampling::SequenceName;
+use crate::solvers::allocation::SAMPLE;
 use crate::transport::{DirectEstimator, LightSampler};
 use std::ops::Range;
 
@@ -37,8 +38,6 @@ const MOST: f64 = 256.0;
 const FEWEST_RAYS: u32 = 3;
 /// Who wants fewer sends none, if others have shot.
 const LEAST_WANTED: f64 = 1.5;
-/// Elements by which the rays are shared out, about.
-const SAMPLE: usize = 4096;
 /// Rays of an element in the trial.
 const RAYS_OF_TRIAL: u32 = 4;
 

@@ -11,6 +11,7 @@
 
 use super::{COSINE_SHARES, LEAST_WANTED};
 use crate::mesh::ElementMesh;
+use crate::solvers::allocation::level;
 
 /// Elements that learn from each other, one after the other in the mesh.
 const NEIGHBOURS: usize = 64;
@@ -34,7 +35,7 @@ pub struct Neighbours {
 struct Learned {
     rays: f32,
     irradiance: f32,
-    variances: [f32; 4],
+    variances: [f32; COSINE_SHARES.len()],
     /// Number in [`COSINE_SHARES`] of their share of cosine rays.
     share: u8,
 }
@@ -106,16 +107,7 @@ impl Neighbours {
         rays: f64,
         ray_flux: f64,
     ) -> f64 {
-        let all = |each: f64| elements.clone().map(|e| self.wanted(mesh, e, each, ray_flux)).sum::<f64>();
-        let (mut low, mut high) = (0.0, 1.0);
-        while all(high) < rays && high < 1e30 {
-            (low, high) = (high, 4.0 * high);
-        }
-        for _ in 0..10 {
-            let middle = 0.5 * (low + high);
-            if all(middle) > rays { high = middle } else { low = middle }
-        }
-        high
+        level(|each| elements.clone().map(|e| self.wanted(mesh, e, each, ray_flux)).sum(), rays)
     }
 
     /// Mean irradiance of the neighbours of element `e` [lux], and variance of a ray [lux²].

@@ -7,13 +7,10 @@ use super::indirect::Precision;
 use crate::Problem;
 use crate::sampling::Sequence;
 use crate::sampling::address::Counters;
-use crate::solvers::allocation::Allocation;
+use crate::solvers::allocation::{Allocation, SAMPLE};
 use crate::solvers::monte_carlo::relaxation::Relaxation;
 use crate::solvers::{Part, gathering, shooting};
 use std::ops::Range;
-
-/// Elements by which the lines are shared out, about.
-const SAMPLE: usize = 4096;
 
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Local {
@@ -26,8 +23,12 @@ pub struct Local {
 impl Local {
     /// Begins anew with so many `rays`, where indirect light is `known` so well; `u` in [0, 1).
     pub fn begin(&mut self, problem: &Problem, rays: u64, known: Precision, u: f64, shot: &mut Relaxation) {
-        shot.light_mut().show(&problem.mesh);
         (self.absorbed, self.known) = (0, known);
+        if rays == 0 {
+            self.allocation = Allocation::default();
+            return;
+        }
+        shot.light_mut().show(&problem.mesh);
         let area = |e| f64::from(problem.mesh.area(e));
         let every = problem.mesh.len().div_ceil(SAMPLE);
         let limit = known.limit(problem.mesh.elements().step_by(every).map(area), rays as f64 / every as f64);

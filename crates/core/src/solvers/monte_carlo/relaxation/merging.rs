@@ -11,7 +11,7 @@
 
 use crate::Problem;
 use crate::math::Rgb;
-use crate::solvers::allocation::Allocation;
+use crate::solvers::allocation::{Allocation, level};
 use crate::solvers::monte_carlo::light::Light;
 use crate::transport::Footprint;
 
@@ -88,14 +88,9 @@ impl Merging {
         let areas = problem.mesh.areas().map(|(area, count)| (f64::from(area), f64::from(count)));
         let wanted = |limit: f64| areas.clone().map(|(area, count)| count * (limit - area).max(0.0)).sum::<f64>();
         let target = rays as f64 * shooting / gathering;
-        let largest = areas.clone().map(|(area, _)| area).fold(0.0, f64::max);
-        let (mut low, mut high) = (0.0, largest + target / problem.mesh.len() as f64);
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if wanted(middle) > target { high = middle } else { low = middle }
-        }
-        let weights = problem.mesh.elements().map(|e| (e, (high - f64::from(problem.mesh.area(e))).max(0.0)));
-        Allocation::systematic(weights, wanted(high), rays, u)
+        let limit = level(wanted, target);
+        let weights = problem.mesh.elements().map(|e| (e, (limit - f64::from(problem.mesh.area(e))).max(0.0)));
+        Allocation::systematic(weights, wanted(limit), rays, u)
     }
 }
 
