@@ -79,6 +79,14 @@ impl Sums {
         self.0[e as usize].0[3]
     }
 
+    /// Irradiance [lm/m²] of element `e`, which so many crossings were `expected` to tell: without bias, but it feels how often
+    /// the element happened to be crossed.
+    pub fn irradiance_by_expected(&self, e: u32, expected: f64) -> Rgb {
+        let Sum([r, g, b, _]) = self.0[e as usize];
+        let mean = |sum: f64| (sum / expected) as f32;
+        Rgb::new(mean(r), mean(g), mean(b))
+    }
+
     /// Irradiance [lm/m²] of element `e`; `None` if no line has crossed it.
     pub fn irradiance(&self, e: u32) -> Option<Rgb> {
         let Sum([r, g, b, crossings]) = self.0[e as usize];

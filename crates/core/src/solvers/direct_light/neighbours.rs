@@ -7,11 +7,11 @@
 //! ```
 //!
 //! rays for each element the sum of `a V` over all elements is least (Neyman 1934), where V is the merged variance. With a = A that
-//! would be the area-weighted mean square error, with a = 1 the plain one; `a = sqrt(A)` serves both.
+//! would be the area-weighted mean square error, with a = 1 the plain one; `a = A^(3/4)` serves both.
 
 use super::{COSINE_SHARES, LEAST_WANTED};
 use crate::mesh::ElementMesh;
-use crate::solvers::allocation::level;
+use crate::solvers::allocation::{importance, level};
 
 /// Elements that learn from each other, one after the other in the mesh.
 const NEIGHBOURS: usize = 64;
@@ -81,7 +81,7 @@ impl Neighbours {
         }
     }
 
-    /// What the sum of `sqrt(A) V` over `elements` would be if they had `rays` rays together, merged with rays of so much flux [lm].
+    /// What the sum of `A^(3/4) V` over `elements` would be if they had `rays` rays together, merged with rays of so much flux [lm].
     pub fn expected_variance(
         &self,
         mesh: &ElementMesh,
@@ -94,7 +94,7 @@ impl Neighbours {
             let (own, worth) = (self.wanted(mesh, e, each, ray_flux), self.worth_of_shooting(mesh, e, ray_flux));
             let own = if own < LEAST_WANTED { 0.0 } else { own };
             let variance = self.expected(e).1;
-            if variance > 0.0 { f64::from(mesh.area(e)).sqrt() * variance / (own + worth) } else { 0.0 }
+            if variance > 0.0 { importance(mesh.area(e).into()) * variance / (own + worth) } else { 0.0 }
         };
         elements.map(of_element).sum()
     }
@@ -129,9 +129,9 @@ impl Neighbours {
         variance * f64::from(mesh.area(e)) / (irradiance * ray_flux)
     }
 
-    /// Rays that element `e` wants: `(k sqrt(a v) - v / V_s)+` with k = `each`.
+    /// Rays that element `e` wants: `(k sqrt(a^(3/4) v) - v / V_s)+` with k = `each`.
     pub fn wanted(&self, mesh: &ElementMesh, e: u32, each: f64, ray_flux: f64) -> f64 {
-        let need = (f64::from(mesh.area(e)).sqrt() * self.expected(e).1).sqrt();
+        let need = (importance(mesh.area(e).into()) * self.expected(e).1).sqrt();
         (each * need - self.worth_of_shooting(mesh, e, ray_flux)).max(0.0)
     }
 

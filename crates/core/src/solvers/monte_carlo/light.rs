@@ -256,15 +256,13 @@ impl Light {
         self.indirect[k] = self.indirect[k] * (1.0 - indirect) + gathered;
     }
 
-    /// Merges an estimate of the flux [lm] on element `e` straight from all lights with what they have shot, with this weight; returns
-    /// the flux that is there then.
-    pub fn merge_direct(&mut self, e: u32, estimate: Rgb, weight: f32) -> Rgb {
+    /// Merges an estimate of the flux [lm] on element `e` straight from all lights with what they have shot, with this weight.
+    pub fn merge_direct(&mut self, e: u32, estimate: Rgb, weight: f32) {
         let merged = self.shot_first(e) * (1.0 - weight) + estimate * weight;
         if let Some(lamp) = self.lamps.get_mut(e as usize) {
             *lamp = Rgb::BLACK;
         }
         self.direct[e as usize] = merged;
-        merged
     }
 
     /// Merges an estimate of the indirect flux [lm] on element `e` with what was shot, with this weight.
@@ -275,8 +273,13 @@ impl Light {
 
     /// Merges what has landed in the running step, an estimate of the indirect irradiance [lux] of element `e` of this `area` [m²].
     pub fn merge_landed(&mut self, e: u32, area: f32, weight: f32) {
-        let landed = to_rgb(&std::mem::take(&mut self.landed[e as usize]));
+        let landed = self.take_landed(e);
         self.merge_indirect(e, landed * area, weight);
+    }
+
+    /// Takes what has landed on element `e` in the running step.
+    pub fn take_landed(&mut self, e: u32) -> Rgb {
+        to_rgb(&std::mem::take(&mut self.landed[e as usize]))
     }
 
     /// Ends a regular iteration: what has landed is another estimate of all reflected light, averaged in with weight `share`.

@@ -42,7 +42,7 @@ pub fn bundles_of(problem: &Problem, rays: f64) -> (u64, u32) {
 
 impl Bundles {
     /// Begins anew: elements reflect the light that was shot, and shall have about as many crossings together as `rays` rays cost.
-    /// `known(bundles, crossings)` is how well so many bundles and crossings [1/m²] will tell it.
+    /// `known(bundles, crossings)` is how well so many bundles and crossings [1/m²] will tell it, and up to which level they do.
     pub fn begin(&mut self, problem: &Problem, rays: u64, known: impl Fn(f64, f64) -> Precision, light: &Light) {
         (self.count, self.cells) = bundles_of(problem, rays as f64);
         self.absorbed = 0;
@@ -52,7 +52,12 @@ impl Bundles {
         self.pieces = (crossings_of_element as u64).clamp(1, MOST_PIECES);
         self.precision = known(self.count as f64, crossings);
         if self.count > 0 {
-            self.source = Source::new(problem, |e| light.reflected_radiosity(&problem.mesh, e));
+            let level = self.precision.level();
+            self.source = Source::new(problem, |e| {
+                let radiosity = light.reflected_radiosity(&problem.mesh, e);
+                let luminance = radiosity.luminance_f64();
+                if luminance > level { radiosity * (level / luminance) as f32 } else { radiosity }
+            });
             self.sums = Sums::new(problem);
         }
     }
@@ -88,15 +93,21 @@ impl Bundles {
         self.absorbed == self.all_pieces()
     }
 
-    /// Merges what was gathered with what was `shot`, and forgets it.
+    /// Merges what was gathered, with the surplus that has landed, with what was `shot` before, and forgets it.
     pub fn merge(&mut self, problem: &Problem, shot: &mut Relaxation) {
         if self.count == 0 {
             return;
         }
         for e in problem.mesh.elements() {
-            if let Some(irradiance) = self.sums.irradiance(e) {
-                let area = problem.mesh.area(e);
-                shot.light_mut().merge_indirect(e, irradiance * area, self.precision.weight_of_bundles(area.into()));
+            let surplus = shot.light_mut().take_landed(e);
+            let area = problem.mesh.area(e);
+            let gathered = match self.precision.crossings_of_rarely_crossed(area.into()) {
+                Some(expected) => Some(self.sums.irradiance_by_expected(e, expected)),
+                None => self.sums.irradiance(e),
+            };
+            if let Some(irradiance) = gathered {
+                let weight = self.precision.weight_of_bundles(area.into());
+                shot.light_mut().merge_indirect(e, irradiance * area + surplus, weight);
             }
         }
         (self.source, self.sums) = (Source::default(), Sums::default());

@@ -2,15 +2,18 @@
 //!
 //! 1. *Shooting* (local lines, incremental): the power level, and a first irradiance, direct and indirect apart.
 //! 2. *Direct light*: each element looks for the lights ([`direct`]).
-//! 3. *Bundles*: elements gather what the others reflect along bundles of parallel global lines ([`bundles`]).
-//! 4. *Local lines*: elements that few lines of a bundle cross gather the same along rays of their own ([`local`]).
+//! 3. *Bundles*: elements gather what the others reflect, up to a level of radiosity, along bundles of parallel global lines
+//!    ([`bundles`]).
+//! 4. *Surplus*: what bright elements reflect beyond that level they shoot along local lines ([`surplus`], [`spread`]).
+//! 5. *Local lines*: elements that few lines of a bundle cross gather all of it along rays of their own ([`local`]).
 //!
 //! Each estimate of direct and of indirect light is unbiased, and they are merged with weights that depend on what is expected, or on
 //! earlier complete solutions, never on their own noise. What is gathered is noisy, but averages over many elements, and the noise is
 //! another in each complete solution. How the rays are shared is decided in [`plan`]. With few rays for each element all shoot.
 //!
-//! Unbiased but for the quotient of counted crossings, of order 1 / N_i (see [`crate::transport::bundle_gather`]). Bundles see elements
-//! of one radiosity, wherever light has landed on them. Cost: one ray a sample; a crossing costs as much as an eighth of a ray.
+//! Unbiased but for the quotient of counted crossings of elements that have enough of them, of order 1 / N_i (see
+//! [`crate::transport::bundle_gather`]). Bundles see elements of one radiosity, wherever light has landed on them. Cost: one ray a
+//! sample; a crossing costs as much as an eighth of a ray.
 //! Memory: beside that of a [`Relaxation`] 48 bytes an element while bundles gather, and 32 more for each of at most four pieces in flight.
 
 mod bundles;
@@ -18,12 +21,17 @@ mod direct;
 mod indirect;
 mod local;
 mod plan;
+mod spread;
+mod surplus;
+mod surroundings;
 
 use self::bundles::Bundles;
 use self::direct::Direct;
 use self::indirect::Indirect;
 use self::local::Local;
 use self::plan::Plan;
+use self::spread::RayFlux;
+use self::surplus::Surplus;
 use super::complete::CompleteSolution;
 use super::relaxation::{Course, Relaxation, Stage};
 use super::{Experience, LightPart, Settings, sources};
@@ -44,6 +52,7 @@ enum Phase {
     Shooting,
     Direct,
     Bundles,
+    Surplus,
     Local,
     Done,
 }
@@ -60,13 +69,15 @@ pub struct Auto {
     /// The running plan, and for how many rays it was made.
     plan: Plan,
     planned_for: u64,
-    /// Flux [lm] of the rays that have shot.
-    ray_flux: f64,
+    ray_flux: RayFlux,
+    /// What surroundings leave of noise.
+    lasting_noise: f64,
     /// Rays, or what costs as much, of the phases after shooting.
     rays_after: u64,
     shooting: Relaxation,
     direct: Direct,
     bundles: Bundles,
+    surplus: Surplus,
     local: Local,
     /// What the last complete solution has told of indirect light.
     indirect: Indirect,
@@ -84,11 +95,13 @@ impl Auto {
             emitted: sources::total(problem),
             plan: Plan::default(),
             planned_for: 0,
-            ray_flux: 0.0,
+            ray_flux: RayFlux::default(),
+            lasting_noise: surroundings::lasting_noise(problem),
             rays_after: 0,
             shooting: Relaxation::new(problem, settings, Course::new(&stages)),
             direct: Direct::new(problem, settings),
             bundles: Bundles::default(),
+            surplus: Surplus::default(),
             local: Local::default(),
             indirect: Indirect::default(),
         }
@@ -98,19 +111,24 @@ impl Auto {
     fn next_phase(&mut self, problem: &Problem) {
         self.phase = match self.phase {
             Phase::Shooting => {
-                // All rays carry about the same.
-                let reflected_share = self.shooting.experience().reflected_share;
-                self.ray_flux = self.emitted * (1.0 + reflected_share) / self.shooting.rays().max(1) as f64;
-                self.direct.begin(problem, self.plan.direct, self.ray_flux);
+                self.ray_flux = self.plan.ray_flux(self.power(self.shooting.experience()));
+                self.direct.begin(problem, self.plan.direct, self.ray_flux[0]);
                 Phase::Direct
             }
             Phase::Direct => {
-                self.indirect = Indirect::of(problem, &self.shooting, self.ray_flux);
-                let known = |bundles, crossings| self.indirect.precision(self.ray_flux, bundles, crossings);
+                self.indirect = Indirect::of(problem, &self.shooting, self.ray_flux, self.lasting_noise);
+                let surplus = self.plan.surplus as f64 / problem.mesh.total_area();
+                let known = |bundles, crossings| self.indirect.precision(self.ray_flux, bundles, crossings, surplus);
                 self.bundles.begin(problem, self.plan.bundles, known, self.shooting.light());
                 Phase::Bundles
             }
             Phase::Bundles => {
+                let u = unit_f64(derive(self.seed, Phase::Surplus as u64));
+                let rays = if self.plan.bundles > 0 { self.plan.surplus } else { 0 };
+                self.surplus.begin(problem, rays, self.bundles.precision().level(), u, &mut self.shooting);
+                Phase::Surplus
+            }
+            Phase::Surplus => {
                 self.bundles.merge(problem, &mut self.shooting);
                 let u = unit_f64(derive(self.seed, Phase::Local as u64));
                 self.local.begin(problem, self.plan.local, self.bundles.precision(), u, &mut self.shooting);
@@ -128,21 +146,28 @@ impl Auto {
             Phase::Shooting => self.shooting.pieces().unwrap_or(0..0),
             Phase::Direct => self.direct.pieces(),
             Phase::Bundles => self.bundles.pieces(),
+            Phase::Surplus => self.surplus.pieces(),
             Phase::Local => self.local.pieces(),
             Phase::Done => 0..0,
         }
+    }
+
+    /// Flux [lm] that is emitted, and reflected.
+    fn power(&self, experience: Experience) -> [f64; 2] {
+        [self.emitted, self.emitted * experience.reflected_share]
     }
 
     /// Makes the best plan by what is known, or a careful one. It stays for all complete solutions of as many rays.
     fn plan_for(&mut self, problem: &Problem, rays: u64, experience: &Experience) {
         match self.direct.learned() {
             _ if rays == self.planned_for => {}
-            _ if rays < FEWEST_RAYS * problem.mesh.len() as u64 => self.plan = Plan::only_shooting(rays),
+            _ if rays < FEWEST_RAYS * problem.mesh.len() as u64 => {
+                self.plan = Plan::only_shooting(rays, experience.reflected_share);
+            }
             None => self.plan = Plan::careful(rays),
             Some(direct) => {
-                let power = self.emitted * (1.0 + experience.reflected_share);
                 let direct = (self.wanted == LightPart::All).then_some(direct);
-                self.plan = Plan::best(problem, rays, power, direct, &self.indirect);
+                self.plan = Plan::best(problem, rays, self.power(*experience), direct, &self.indirect);
                 self.planned_for = rays;
             }
         }
@@ -161,7 +186,10 @@ impl CompleteSolution for Auto {
         self.rays_after = 0;
         self.plan_for(problem, rays, experience);
         self.phase = Phase::Shooting;
-        self.shooting.restart(problem, seed, self.plan.shooting, experience);
+        // What emission leaves to reflection, were all rays to carry the same.
+        let left = self.plan.emission as f64 * experience.reflected_share;
+        self.shooting.set_share_of_incremental(self.plan.reflection as f64 / left.max(1.0));
+        self.shooting.restart(problem, seed, self.plan.emission + left as u64, experience);
         if self.pieces_of_phase().is_empty() {
             self.next_phase(problem);
         }
@@ -176,6 +204,7 @@ impl CompleteSolution for Auto {
             Phase::Shooting => self.shooting.part(problem, piece),
             Phase::Direct => self.direct.part(problem, piece),
             Phase::Bundles => self.bundles.part(problem, self.numbers().as_ref(), piece),
+            Phase::Surplus => self.surplus.part(problem, self.numbers().as_ref(), self.shooting.light(), piece),
             Phase::Local => self.local.part(problem, self.numbers().as_ref(), &self.shooting, piece),
             Phase::Done => Part::default(),
         }
@@ -192,6 +221,7 @@ impl CompleteSolution for Auto {
             }
             Phase::Direct => self.direct.absorb(problem, &part, &mut self.shooting),
             Phase::Bundles => self.bundles.absorb(&part),
+            Phase::Surplus => self.surplus.absorb(&part, &mut self.shooting),
             Phase::Local => self.local.absorb(problem, &part, &mut self.shooting),
             Phase::Done => false,
         };
@@ -214,7 +244,7 @@ impl CompleteSolution for Auto {
 
     fn retire(&mut self) {
         self.shooting.retire();
-        self.local = Local::default();
+        (self.surplus, self.local) = (Surplus::default(), Local::default());
     }
 
     fn experience(&self) -> Experience {
@@ -226,6 +256,7 @@ impl CompleteSolution for Auto {
             Phase::Shooting => self.shooting.stage(),
             Phase::Direct => "looking for the lights",
             Phase::Bundles => "gathering along bundles",
+            Phase::Surplus => "shooting from bright surfaces",
             Phase::Local => "gathering along local lines",
             Phase::Done => "done",
         }

@@ -107,6 +107,15 @@ impl Relaxation {
         }
     }
 
+    /// Gives incremental shooting this share of the rays that are left to reflected light, in the next complete solution.
+    pub fn set_share_of_incremental(&mut self, new: f64) {
+        for stage in &mut self.course.stages {
+            if let Stage::Incremental { share, .. } = stage {
+                *share = new;
+            }
+        }
+    }
+
     /// The running stage; none when the solution is complete.
     fn stage(&self) -> Option<Stage> {
         self.course.stages.get(self.place).copied()
