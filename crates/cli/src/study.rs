@@ -45,7 +45,7 @@ pub struct StudyCommand {
     #[arg(short, long = "output", value_name = "DIR")]
     output: Option<PathBuf>,
 
-    /// Folder of scenes that are no part of isolux, which 'speed' asks for: living-room.glb. Without it it does
+    /// Folder of scenes that are no part of isolux, which 'speed' asks for: living-room.glb and classroom.glb. Without them it does
     /// with the others
     #[arg(long, value_name = "DIR", default_value = SCENES)]
     scenes: PathBuf,

@@ -7,6 +7,7 @@ use isolux_core::sampling::SequenceName;
 use isolux_core::solution::luminance_error;
 use isolux_core::solvers::monte_carlo::axes::Walk;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, Method, Settings};
+use isolux_core::transport::Leaving;
 use isolux_core::{Problem, Solution};
 use std::f64::consts::SQRT_2;
 
@@ -24,8 +25,8 @@ const SEED: u64 = 1_000_000;
 pub enum Kind {
     /// That of methods of such a walk, to the letter: of the system with constant elements, or of the radiosity equation.
     Of(Walk),
-    /// That light of a scene as users have it: it leaves from where it landed.
-    WhereLanded(LightPart),
+    /// That light of a scene, by the system with constant elements, to the letter: there all methods that pool light have the same answer.
+    Light(LightPart),
 }
 
 impl Kind {
@@ -34,8 +35,8 @@ impl Kind {
         match self {
             Kind::Of(Walk::Discrete) => "shirley",
             Kind::Of(Walk::Continuous) => "particle-tracing",
-            Kind::WhereLanded(LightPart::All) => "stochastic-jacobi",
-            Kind::WhereLanded(LightPart::Indirect) => "stochastic-jacobi-indirect",
+            Kind::Light(LightPart::All) => "all-light",
+            Kind::Light(LightPart::Indirect) => "reflected-light",
         }
     }
 
@@ -47,13 +48,13 @@ impl Kind {
         let method = |name| Method::named(name).map(|method| Method { sequence: SequenceName::OWEN_SOBOL, ..method });
         Ok(match self {
             Kind::Of(_) => Settings { replicates: 16, ..single(method(self.name())?, rays, SEED) },
-            Kind::WhereLanded(light) => Settings {
-                method: method("stochastic-jacobi")?,
+            Kind::Light(light) => Settings {
+                method: method("auto")?,
                 seed: SEED,
                 budget: Budget::Rays(rays),
                 replicates: 16,
                 light,
-                ..Settings::default()
+                leaving: Leaving::WholeElement,
             },
         })
     }

@@ -2,8 +2,11 @@
 //!
 //! `at` is the time [s] that a run is given; its error is looked at after 1/4 s and at each doubling, which is a place of its own.
 //! Seconds are processor time. Looking is not counted, nor are reading the scene and building the ray structure. Runs are as users
-//! have them: rounds of as many complete solutions as suit the method, an error bar for each element, light leaves from where it landed. Errors are those of
-//! [`Reference::errors`](crate::reference::Reference::errors). Reflected light has a run of its own, where the method can tell it.
+//! have them: rounds of as many complete solutions as suit the method, an error bar for each element. But light leaves from whole
+//! elements. Where it leaves from where it landed each kind of line has its own idea of where that is (a spot for what is shot, a cell for
+//! what is gathered), so that methods differ by more than their noise where surfaces nearly touch; of elements of constant radiosity
+//! there is but one solution. Errors are those of [`Reference::errors`](crate::reference::Reference::errors). Reflected light has a run of
+//! its own, where the method can tell it.
 
 use super::Measure;
 use crate::Error;
@@ -14,6 +17,7 @@ use crate::stopwatch::Stopwatch;
 use crate::task::Task;
 use isolux_core::solvers::Solver;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
+use isolux_core::transport::Leaving;
 use std::time::{Duration, Instant};
 
 /// The first look [s].
@@ -65,11 +69,12 @@ fn place(k: usize) -> f64 {
 
 /// Looks at a run for that light, at all places up to the point's; `None` if somebody has stopped it.
 fn looks(task: &mut Task, light: LightPart) -> Result<Option<Vec<Look>>, Error> {
-    let Some(reference) = task.reference(Kind::WhereLanded(light))? else { return Ok(None) };
+    let Some(reference) = task.reference(Kind::Light(light))? else { return Ok(None) };
     let problem = task.problem()?;
     let method = task.series().method()?;
     let (budget, replicates, seed) = (Budget::Endless, method.natural_replicates(), task.point.seed);
-    let settings = Settings { method, light, seed, budget, replicates, ..Settings::default() };
+    let leaving = Leaving::WholeElement;
+    let settings = Settings { method, light, seed, budget, replicates, leaving };
     let mut looks = vec![NO_LOOK; (0..).take_while(|&k| place(k) <= task.point.at * 1.001).count()];
     let (mut stopwatch, mut drive) = (Stopwatch::new()?, Drive::new());
     let mut solver = stopwatch.time(|| MonteCarlo::new(&problem, settings))?;

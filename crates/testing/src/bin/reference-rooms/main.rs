@@ -14,7 +14,7 @@ use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
 use isolux_core::solution::luminance_error;
 use isolux_core::solvers::MonteCarlo;
-use isolux_core::solvers::monte_carlo::{Budget, Settings};
+use isolux_core::solvers::monte_carlo::{Budget, Method, Settings};
 use isolux_core::view::VertexField;
 use isolux_io::files::OutputFile;
 use isolux_io::import::{ImportOptions, read_scene};
@@ -31,6 +31,8 @@ const ROOMS: [(&str, &[(u64, u64)]); 3] = [
 ];
 /// One independent solution each.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
+/// The method of all solutions.
+const METHOD: &str = "stochastic-jacobi";
 /// Complete solutions behind the error bars of one solution.
 const REPLICATES: u32 = 8;
 
@@ -88,8 +90,10 @@ fn compare(scenes: &Path, room: &'static str, more: u64, rays: u64) -> Result<Tr
     let mut dark = Comparison::new(reference.dark, &problem)?;
     let mut light = vec![(0.0, 0.0); problem.mesh.len()];
     let (mut rays_in_all, mut back_face) = (0, 0.0);
+    let method = Method::named(METHOD)?;
     for seed in SEEDS {
-        let settings = Settings { seed, budget: Budget::Rays(rays), replicates: REPLICATES, ..Settings::default() };
+        let settings =
+            Settings { method, seed, budget: Budget::Rays(rays), replicates: REPLICATES, ..Settings::default() };
         let mut solver = MonteCarlo::new(&problem, settings)?;
         let solution = run(&mut solver, &problem, |_| ControlFlow::Continue(()));
         rays_in_all += solution.work.rays;
