@@ -31,7 +31,7 @@ test:
 
 bench:
 	BENCH_REPORT=$(CURDIR)/docs/performance.md BENCH_DATE=$$(date +%F) CRITERION_HOME=$(CURDIR)/target/criterion \
-	cargo bench --locked --workspace $(if $(EMBREE),--features isolux-testing/embree) --bench kernel --bench lines
+	cargo bench --locked --workspace $(if $(EMBREE),--features isolux-testing/embree) --bench speed --bench lines
 
 lint:
 	cargo fmt --all --check

@@ -1,4 +1,4 @@
-//! Speed of the ray kernel on one core, beside Embree's: `make bench`, or `make bench EMBREE=1` with Embree.
+//! Speed of the ray kernel on one core, beside Embree's, and of whole solves: `make bench`, or `make bench EMBREE=1` with Embree.
 //!
 //! Contestants answer the same questions about the same rays, in turn, round after round, so that a machine that drifts
 //! drifts for all of them. With `BENCH_REPORT` set to a path the medians are written there as a page (`report.rs`).
@@ -6,6 +6,7 @@
 mod contestant;
 #[cfg(feature = "embree")]
 mod embree;
+mod end_to_end;
 mod rays;
 mod report;
 

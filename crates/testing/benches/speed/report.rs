@@ -1,7 +1,7 @@
 //! Turns criterion's medians into the page `docs/performance.md`: rates, and ratios to Embree.
 
-use crate::ROUNDS;
 use crate::rays::RAYS;
+use crate::{ROUNDS, end_to_end};
 use anyhow::{Context, Result};
 use isolux_studies::machine::processor;
 use std::env;
@@ -93,6 +93,8 @@ fn page(facts: &[Facts], home: &Path) -> Result<String> {
     write!(page, "\nBuild of {name}, {triangles} triangles, on all cores: isolux {}", seconds("isolux")?)?;
     page += &if embree { format!(", Embree {}.\n", seconds("Embree")?) } else { ".\n".to_owned() };
     page += include_str!("notes.md");
+    page += include_str!("end_to_end.md");
+    page += &end_to_end::table()?;
     Ok(page)
 }
 
