@@ -14,9 +14,10 @@ use isolux_core::solvers::monte_carlo::{METHODS, Method};
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Method")]
 pub struct MethodArguments {
-    /// Algorithm, by its name in the literature: see 'isolux list methods'. The axes below change it
-    #[arg(long, value_name = "NAME", default_value = METHODS[0].name)]
-    method: String,
+    /// Algorithm, by its name in the literature: see 'isolux list methods'. The axes below change it [default: auto, or
+    /// stochastic-jacobi if one of them but --sequence is given]
+    #[arg(long, value_name = "NAME")]
+    method: Option<String>,
 
     /// Sample numbers: see 'isolux list sequences'
     #[arg(long, value_name = "NAME", value_parser = parse_choice::<sampling::Entry>)]
@@ -72,9 +73,15 @@ pub struct MethodArguments {
 }
 
 impl MethodArguments {
+    /// The name of the method from which the axes differ. Sample numbers suit all.
+    fn name(&self) -> &str {
+        let other = self.moves_another_axis();
+        self.method.as_deref().unwrap_or(if other { "stochastic-jacobi" } else { METHODS[0].name })
+    }
+
     /// The deterministic method that is asked for, if it is one.
     pub fn deterministic(&self) -> Option<&'static deterministic::Entry> {
-        DETERMINISTIC.iter().find(|entry| entry.name == self.method)
+        DETERMINISTIC.iter().find(|entry| entry.name == self.name())
     }
 
     /// What a deterministic method is told.
@@ -112,16 +119,21 @@ impl MethodArguments {
             ("link-power", self.link_power.is_some()),
         ];
         match asked.into_iter().find(|(name, is_asked)| *is_asked && !used.contains(name)) {
-            Some((name, _)) => Err(Failure::usage(format!("{} has no use for --{name}", self.method))
+            Some((name, _)) => Err(Failure::usage(format!("{} has no use for --{name}", self.name()))
                 .with_help("leave it out; 'isolux solve --help' says whose it is")),
             None => Ok(()),
         }
     }
 
     fn moves_an_axis(&self) -> bool {
-        let axes = [self.walk.is_some(), self.lines.is_some(), self.order.is_some(), self.sequence.is_some()];
-        let more = [self.address.is_some(), self.estimator.is_some(), self.direction.is_some()];
-        axes.contains(&true) || more.contains(&true) || self.survival.is_some() || self.first_shot.is_some()
+        self.sequence.is_some() || self.moves_another_axis()
+    }
+
+    /// Another axis than that of sample numbers.
+    fn moves_another_axis(&self) -> bool {
+        let axes = [self.walk.is_some(), self.lines.is_some(), self.order.is_some(), self.address.is_some()];
+        let more = [self.estimator.is_some(), self.direction.is_some(), self.survival.is_some()];
+        axes.contains(&true) || more.contains(&true) || self.first_shot.is_some()
     }
 
     /// The method of Monte Carlo with the axes that were asked for.
@@ -130,7 +142,7 @@ impl MethodArguments {
     /// A failure for a name that is in no table, for a combination without meaning, and for a setting of other methods.
     pub fn method(&self) -> Result<Method, Failure> {
         let names = METHODS.iter().map(|method| method.name).chain(DETERMINISTIC.iter().map(|entry| entry.name));
-        let named = Method::named(&self.method).map_err(|_| Error::unknown_name("method", &self.method, names))?;
+        let named = Method::named(self.name()).map_err(|_| Error::unknown_name("method", self.name(), names))?;
         let mut method = Method {
             walk: self.walk.unwrap_or(named.walk),
             lines: self.lines.unwrap_or(named.lines),
@@ -195,6 +207,11 @@ mod tests {
         assert_eq!(method.sequence.name(), "halton");
         let method = arguments("solve --order depth-first --walk continuous").method().unwrap();
         assert_eq!(method, Method::named("particle-tracing").unwrap());
+        assert_eq!(
+            arguments("solve --lines bundle").method().unwrap(),
+            arguments("solve --method stochastic-jacobi --lines bundle").method().unwrap()
+        );
+        assert_eq!(arguments("solve --sequence sobol").method().unwrap().order, OrderName::AUTO);
         let method = arguments("solve --method random-walk --address per-particle").method().unwrap();
         assert_eq!(method.address, Address::PerParticle);
     }

@@ -4,7 +4,7 @@
 
 use super::{LightPart, to_rgb};
 use crate::math::Rgb;
-use crate::math::hash::mix;
+use crate::math::hash::{mix, unit_f64};
 use crate::mesh::ElementMesh;
 use crate::solvers::Part;
 use crate::transport::{Footprint, Leaving};
@@ -161,12 +161,17 @@ impl Light {
         }
     }
 
-    /// Notes where in the running shooting step light has landed.
-    pub fn mark(&mut self, part: &Part) {
+    /// Notes where in the running shooting step light has landed: with this `share` of the landings where the rays of other steps carry
+    /// more, so that notes count light. An element's first landing is always noted.
+    pub fn mark(&mut self, part: &Part, share: f64) {
         if !self.fresh.is_empty() {
             for landing in &part.landings {
                 self.marked += 1;
-                self.fresh[landing.element as usize].add(landing.spot, mix(self.marked));
+                let (k, noise) = (landing.element as usize, mix(self.marked));
+                let is_first = || self.fresh[k] == Footprint::WHOLE && self.footprint[k] == Footprint::WHOLE;
+                if share >= 1.0 || unit_f64(mix(!noise)) < share || is_first() {
+                    self.fresh[k].add(landing.spot, noise);
+                }
             }
         }
     }

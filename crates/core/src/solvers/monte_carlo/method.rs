@@ -30,7 +30,7 @@ pub struct NamedMethod {
     pub method: Method,
 }
 
-/// Stochastic Jacobi radiosity, from which the others differ.
+/// Stochastic Jacobi radiosity, from which the others of the literature differ.
 pub const STOCHASTIC_JACOBI: Method = Method {
     walk: Walk::Discrete,
     lines: Lines::Local,
@@ -43,6 +43,9 @@ pub const STOCHASTIC_JACOBI: Method = Method {
     first_shot: FirstShot::Local,
 };
 
+/// Everything that is fast, in one: the default.
+pub const AUTO: Method = of_order(OrderName::AUTO);
+
 const fn of_order(order: OrderName) -> Method {
     Method { order, ..STOCHASTIC_JACOBI }
 }
@@ -50,25 +53,22 @@ const fn of_order(order: OrderName) -> Method {
 const RANDOM_WALK: Method = Method { order: OrderName::DEPTH_FIRST, address: Address::PerElement, ..STOCHASTIC_JACOBI };
 const PARTICLES: Method = Method { walk: Walk::Continuous, address: Address::PerParticle, ..RANDOM_WALK };
 
-/// All methods with a name. The first is the default.
+/// All methods with a name. The first is what a program should use unless told otherwise.
 pub const METHODS: &[NamedMethod] = &[
-    NamedMethod {
-        name: "stochastic-jacobi",
-        what: [
-            "shoots light until none is left, shoots the whole once more, and gathers",
-            "on small elements; the way to all-round good results",
-        ],
-        source: "Neumann et al. 1995; Bekaert 1999",
-        method: STOCHASTIC_JACOBI,
-    },
     NamedMethod {
         name: "auto",
         what: [
             "shoots a part of the rays, then looks for the lights from each element and",
-            "gathers along fast bundles of lines; small elements along rays of their own",
+            "gathers along fast bundles of lines; bright surfaces shoot once more",
         ],
         source: "isolux",
-        method: of_order(OrderName::AUTO),
+        method: AUTO,
+    },
+    NamedMethod {
+        name: "stochastic-jacobi",
+        what: ["shoots light until none is left, shoots the whole once more, and gathers", "on small elements"],
+        source: "Neumann et al. 1995; Bekaert 1999",
+        method: STOCHASTIC_JACOBI,
     },
     NamedMethod {
         name: "stochastic-ray",

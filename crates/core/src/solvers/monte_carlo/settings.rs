@@ -48,6 +48,7 @@ pub enum Budget {
     Endless,
 }
 
+/// Those of stochastic Jacobi: a program chooses the method, and the replicates that suit it ([`Method::natural_replicates`]).
 impl Default for Settings {
     fn default() -> Settings {
         Settings {

@@ -186,10 +186,11 @@ impl CompleteSolution for Auto {
         self.rays_after = 0;
         self.plan_for(problem, rays, experience);
         self.phase = Phase::Shooting;
-        // What emission leaves to reflection, were all rays to carry the same.
-        let left = self.plan.emission as f64 * experience.reflected_share;
-        self.shooting.set_share_of_incremental(self.plan.reflection as f64 / left.max(1.0));
-        self.shooting.restart(problem, seed, self.plan.emission + left as u64, experience);
+        // Incremental shooting takes as many rays as are planned, whatever share of them the power deserves.
+        let planned = self.plan.experience();
+        let share = planned.reflected_share / experience.reflected_share.max(planned.reflected_share * 1e-3);
+        self.shooting.set_share_of_incremental(share, self.plan.ray_flux(self.power(*experience)));
+        self.shooting.restart(problem, seed, self.plan.emission + self.plan.reflection, &planned);
         if self.pieces_of_phase().is_empty() {
             self.next_phase(problem);
         }
@@ -210,13 +211,13 @@ impl CompleteSolution for Auto {
         }
     }
 
-    fn absorb(&mut self, problem: &Problem, part: Part, experience: &Experience) {
+    fn absorb(&mut self, problem: &Problem, part: Part, _: &Experience) {
         if self.phase != Phase::Shooting {
             self.rays_after += part.rays;
         }
         let complete = match self.phase {
             Phase::Shooting => {
-                self.shooting.absorb(problem, part, experience);
+                self.shooting.absorb(problem, part, &self.plan.experience());
                 self.shooting.pieces().is_none()
             }
             Phase::Direct => self.direct.absorb(problem, &part, &mut self.shooting),

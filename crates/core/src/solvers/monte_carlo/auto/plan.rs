@@ -9,6 +9,7 @@ use super::indirect::Indirect;
 use super::spread::RayFlux;
 use crate::Problem;
 use crate::solvers::direct_light::Neighbours;
+use crate::solvers::monte_carlo::Experience;
 use crate::transport::bundle::crossings_per_area;
 
 /// Parts into which the rays are shared.
@@ -37,8 +38,8 @@ type Parts = [u32; 6];
 impl Plan {
     /// All rays shoot, and carry about the same if surfaces reflect `reflected_share` of what is emitted.
     pub fn only_shooting(rays: u64, reflected_share: f64) -> Plan {
-        let emission = (rays as f64 / (1.0 + reflected_share)) as u64;
-        Plan { emission, reflection: rays - emission, ..Plan::default() }
+        let emission = ((rays as f64 / (1.0 + reflected_share)) as u64).max(1);
+        Plan { emission, reflection: rays.saturating_sub(emission), ..Plan::default() }
     }
 
     /// Some of everything.
@@ -57,6 +58,11 @@ impl Plan {
             surplus: part(surplus, 1.0),
             local: part(local, COST_OF_GATHERING),
         }
+    }
+
+    /// What would share the rays that shoot as this plan does.
+    pub fn experience(&self) -> Experience {
+        Experience { reflected_share: self.reflection as f64 / self.emission.max(1) as f64 }
     }
 
     /// Flux of the rays that shoot direct and reflected light, of which there is so much `power` [lm].

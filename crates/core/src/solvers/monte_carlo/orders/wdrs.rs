@@ -200,7 +200,7 @@ impl CompleteSolution for Wdrs {
         self.lost[0] += part.escaped;
         self.lost[1] += part.back_face;
         self.light.land(&part);
-        self.light.mark(&part);
+        self.light.mark(&part, 1.0);
         if self.pieces_absorbed == shooting::pieces(self.allocation.rays()) {
             let sent = |(i, n)| (i, n, self.ray(problem, i, n) * n as f32);
             let sent: Vec<(u32, u32, Rgb)> = self.allocation.counts().map(sent).collect();

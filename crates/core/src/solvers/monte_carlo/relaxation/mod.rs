@@ -61,6 +61,8 @@ pub struct Relaxation {
     lost: [f64; 2],
     /// Flux [lm] that global lines took too little, or too much if negative: they cross an element as often as chance will.
     adrift: f64,
+    /// Shares of the landings of direct and of reflected light that are noted.
+    noted: [f64; 2],
     /// Flux [lm] of each ray that left an emitting surface.
     emission_ray_flux: f64,
     /// Rays of incremental and regular shooting.
@@ -96,6 +98,7 @@ impl Relaxation {
             shot: 0.0,
             lost: [0.0; 2],
             adrift: 0.0,
+            noted: [1.0; 2],
             emission_ray_flux: 0.0,
             reflected_rays: 0,
             reflected: 0.0,
@@ -107,13 +110,16 @@ impl Relaxation {
         }
     }
 
-    /// Gives incremental shooting this share of the rays that are left to reflected light, in the next complete solution.
-    pub fn set_share_of_incremental(&mut self, new: f64) {
+    /// Gives incremental shooting this `share` of the rays that are left to reflected light, in the next complete solution. So rays of
+    /// emission and of reflection no longer carry the same, but light in this proportion.
+    pub fn set_share_of_incremental(&mut self, new: f64, ray_flux: [f64; 2]) {
         for stage in &mut self.course.stages {
             if let Stage::Incremental { share, .. } = stage {
                 *share = new;
             }
         }
+        let most = ray_flux[0].max(ray_flux[1]);
+        self.noted = ray_flux.map(|flux| if most > 0.0 { flux / most } else { 1.0 });
     }
 
     /// The running stage; none when the solution is complete.
@@ -228,7 +234,7 @@ impl CompleteSolution for Relaxation {
             Stage::Gathering => self.light.land(&part),
             _ => {
                 self.light.land(&part);
-                self.light.mark(&part);
+                self.light.mark(&part, self.noted[usize::from(stage.reflects())]);
             }
         }
         self.lost[0] += part.escaped;
