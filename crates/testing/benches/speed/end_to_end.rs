@@ -18,7 +18,7 @@ use std::time::Instant;
 const SCENES: [&str; 2] = ["cornell-box", "office"];
 const ELEMENTS: u64 = 200_000;
 /// The others are compared with the first.
-const METHODS: [&str; 4] = ["stochastic-jacobi", "shirley", "global-jacobi", "auto"];
+const METHODS: [&str; 3] = ["stochastic-jacobi", "shirley", "auto"];
 const SECONDS: f64 = 10.0;
 
 /// How far a method came.
