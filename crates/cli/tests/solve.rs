@@ -67,6 +67,11 @@ fn indirect_light_is_part_of_all_light_and_says_so() {
     let mean = |summary: &serde_json::Value| summary["objects"][0]["mean"].as_f64().unwrap();
     assert!(0.0 < mean(&indirect) && mean(&indirect) < mean(&all), "{indirect}");
     assert_eq!(all["balance"]["emitted"], indirect["balance"]["emitted"]);
+    // Stochastic Jacobi shoots the same rays for both, auto as many as are best.
+    let [all_shot, indirect_shot] = ["all", "indirect"].map(|light| {
+        folder.json(&with(&["solve", "--json", "--method", "stochastic-jacobi", "--light", light], &SMALL))
+    });
+    assert_eq!(all_shot["balance"], indirect_shot["balance"]);
     assert_eq!(indirect["parameters"]["light"], "indirect");
     assert!(
         indirect["remarks"].to_string().contains("reflected light alone") && all["remarks"] == serde_json::json!([])

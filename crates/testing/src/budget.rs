@@ -36,6 +36,7 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("furnace: cube with few lines", comparisons(6)),
     ("sphere", 2 * comparisons(8)),
     ("honest error bars", 4 * honesty::COMPARISONS),
+    ("honest error bars of auto", 2 * honesty::COMPARISONS),
     ("honest error bars with few lines", 1),
     ("honest error bars over rounds", 1),
     ("back face of a flipped wall", 1),

@@ -3,11 +3,11 @@
 #![allow(clippy::unwrap_used)]
 
 use isolux_core::math::hash::derive;
-use isolux_core::solvers::monte_carlo::{Budget, Settings};
+use isolux_core::solvers::monte_carlo::{Budget, Method, Settings};
 use isolux_core::solvers::{MonteCarlo, Solver};
 use isolux_core::{Problem, Solution};
 use isolux_testing::budget::{assert_t_of, refutes};
-use isolux_testing::ensemble::{Exact, ensemble, solve_until, with_rays};
+use isolux_testing::ensemble::{Exact, constant_elements, ensemble, solve_until, with_rays};
 use isolux_testing::honesty::{of_error, of_student};
 use isolux_testing::projections::Deviation;
 use isolux_testing::scenes::{furnace_answer, problem, sphere_irradiance};
@@ -16,8 +16,12 @@ use isolux_testing::statistics::p_of_t;
 const REPLICATES: u32 = 16;
 
 fn assert_student(problem: &Problem, runs: &[Solution], exact: &Exact) {
-    for Deviation { name, t, dof } in of_student(problem, runs, exact, REPLICATES) {
-        assert_t_of("honest error bars", &name, t, dof);
+    assert_student_of("honest error bars", problem, runs, exact, REPLICATES);
+}
+
+fn assert_student_of(test: &str, problem: &Problem, runs: &[Solution], exact: &Exact, replicates: u32) {
+    for Deviation { name, t, dof } in of_student(problem, runs, exact, replicates) {
+        assert_t_of(test, &name, t, dof);
     }
 }
 
@@ -36,6 +40,18 @@ fn scores_of_a_sphere_follow_student() {
         let problem = problem(name, 8 * 16);
         let runs = ensemble(&problem, with_rays(100_000), 48);
         assert_student(&problem, &runs, &sphere_irradiance(&problem));
+    }
+}
+
+/// Auto merges many estimates, each with weights of its own, and takes fewer complete solutions.
+#[test]
+fn scores_of_auto_follow_student() {
+    let method = Method::named("auto").unwrap();
+    let replicates = method.natural_replicates();
+    for rho in ["0.5", "0.9"] {
+        let problem = problem(&format!("labyrinth:rho={rho}"), 796);
+        let runs = ensemble(&problem, Settings { method, replicates, ..constant_elements(300_000) }, 32);
+        assert_student_of("honest error bars of auto", &problem, &runs, &furnace_answer(&problem), replicates);
     }
 }
 

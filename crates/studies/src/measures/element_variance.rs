@@ -16,7 +16,7 @@ use crate::bench::solve;
 use crate::results::Row;
 use crate::task::{Task, rows_by};
 use isolux_core::form_factors::Settings as FactorSettings;
-use isolux_core::solvers::monte_carlo::{Budget, Method, MonteCarlo, Settings};
+use isolux_core::solvers::monte_carlo::{Budget, MonteCarlo, Settings};
 use isolux_core::{Problem, Solution};
 use rayon::prelude::*;
 
@@ -79,8 +79,7 @@ impl ElementVariance {
         let scene = task.point.scene;
         if self.radiosity.as_ref().is_none_or(|(known, _)| *known != scene) {
             let rays = task.spec.reference_rays.unwrap_or(1e7) as u64;
-            let method = Method::named("stochastic-jacobi")?;
-            let settings = Settings { method, replicates: 16, budget: Budget::Rays(rays), ..Settings::default() };
+            let settings = Settings { budget: Budget::Rays(rays), ..Settings::default() };
             let mut solver = MonteCarlo::new(problem, settings)?;
             let Some(solution) = solve(&mut solver, problem, "reference", task.watch) else { return Ok(None) };
             let of_element = |e| solution.radiosity(problem, e).luminance_f64();

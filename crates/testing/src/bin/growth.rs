@@ -13,7 +13,7 @@ use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
 use isolux_core::scene::builtin::builtin;
 use isolux_core::solvers::MonteCarlo;
-use isolux_core::solvers::monte_carlo::{Budget, Settings};
+use isolux_core::solvers::monte_carlo::{Budget, METHODS, Settings};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -49,10 +49,13 @@ struct Cost {
 }
 
 fn cost(problem: &Problem) -> Result<Cost> {
+    let method = METHODS[0].method;
+    let replicates = method.natural_replicates();
     let mut least = Cost { rays: f64::INFINITY, seconds: f64::INFINITY };
     for seed in 1..=RUNS {
         let budget = Budget::Rays(RAYS_PER_ELEMENT * problem.mesh.len() as u64);
-        let mut solver = MonteCarlo::new(problem, Settings { budget, seed, ..Settings::default() })?;
+        let mut solver =
+            MonteCarlo::new(problem, Settings { method, replicates, budget, seed, ..Settings::default() })?;
         let start = Instant::now();
         let solution = run(&mut solver, problem, |_| ControlFlow::Continue(()));
         let times = (solution.rms_error(problem) / ACCURACY).powi(2);

@@ -64,7 +64,7 @@ fn main() -> Result<()> {
 }
 
 fn with_rays(rays: u64, seed: u64) -> Settings {
-    Settings { budget: Budget::Rays(rays), seed, replicates: 16, ..Settings::default() }
+    Settings { budget: Budget::Rays(rays), seed, ..Settings::default() }
 }
 
 fn solve(solver: &mut dyn Solver, problem: &Problem) -> Solution {

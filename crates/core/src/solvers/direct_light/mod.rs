@@ -34,7 +34,7 @@ const TRIAL_OF: usize = 4;
 const RAYS_PER_PIECE: usize = 1 << 14;
 /// Most rays of an element, as a multiple of the mean.
 const MOST: f64 = 256.0;
-/// Fewest rays of an element that sends any: one of each kind.
+/// Fewest rays of an element that sends any; there are two kinds of them.
 const FEWEST_RAYS: u32 = 3;
 /// Who wants fewer sends none, if others have shot.
 const LEAST_WANTED: f64 = 1.5;

@@ -129,7 +129,7 @@ impl Neighbours {
         variance * f64::from(mesh.area(e)) / (irradiance * ray_flux)
     }
 
-    /// Rays that element `e` wants: `(k sqrt(a^(3/4) v) - v / V_s)+` with k = `each`.
+    /// Rays that element `e` wants: `(k sqrt(a v) - v / V_s)+` with k = `each` and a its [`importance`].
     pub fn wanted(&self, mesh: &ElementMesh, e: u32, each: f64, ray_flux: f64) -> f64 {
         let need = (importance(mesh.area(e).into()) * self.expected(e).1).sqrt();
         (each * need - self.worth_of_shooting(mesh, e, ray_flux)).max(0.0)

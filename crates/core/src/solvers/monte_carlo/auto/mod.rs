@@ -14,7 +14,7 @@
 //! Unbiased but for the quotient of counted crossings of elements that have enough of them, of order 1 / N_i (see
 //! [`crate::transport::bundle_gather`]). Bundles see elements of one radiosity, wherever light has landed on them. Cost: one ray a
 //! sample; a crossing costs as much as an eighth of a ray.
-//! Memory: beside that of a [`Relaxation`] 48 bytes an element while bundles gather, and 32 more for each of at most four pieces in flight.
+//! Memory: beside that of a [`Relaxation`] 8 bytes an element for rays of the surplus, 48 bytes an element while bundles gather, and 32 more for each of at most four pieces in flight.
 
 mod bundles;
 mod direct;
@@ -186,7 +186,8 @@ impl CompleteSolution for Auto {
         self.rays_after = 0;
         self.plan_for(problem, rays, experience);
         self.phase = Phase::Shooting;
-        // Incremental shooting takes as many rays as are planned, whatever share of them the power deserves.
+        // Incremental shooting takes as many rays as are planned, whatever share of them the power deserves: as if surfaces reflected as
+        // much. Where they reflect next to nothing it may take more of them than it needs, but a thousand times at most.
         let planned = self.plan.experience();
         let share = planned.reflected_share / experience.reflected_share.max(planned.reflected_share * 1e-3);
         self.shooting.set_share_of_incremental(share, self.plan.ray_flux(self.power(*experience)));

@@ -118,8 +118,8 @@ impl Spread {
     fn at(&self, k: usize, rays: f64, ray_flux: RayFlux) -> Split {
         let Some(below) = self.up_to.get(k) else { return Split::default() };
         if k + 1 == BINS {
-            let (level, mean) = (f64::INFINITY, self.mean);
-            return Split { level, mean, noise: below.noise_of(ray_flux), ..self.gathered(below, 0.0, mean) };
+            let (level, mean, variance) = (f64::INFINITY, self.mean, self.variance(below, 0.0, self.mean));
+            return Split { level, mean, variance, noise: below.noise_of(ray_flux), variance_of_surplus: 0.0 };
         }
         let level = self.mean * ((k as f64 + 1.0 - MIDDLE) / BINS_OF_OCTAVE).exp2();
         let above = (1.0 - below.area).max(0.0);
@@ -128,16 +128,16 @@ impl Spread {
         Split {
             level,
             mean,
+            variance: self.variance(below, above * level * level, mean),
             noise: below.noise_of(ray_flux),
             variance_of_surplus: surplus * surplus / rays,
-            ..self.gathered(below, above * level * level, mean)
         }
     }
 
     /// The variance where those `below` the level are seen in full, and the others add that much to the mean square.
-    fn gathered(&self, below: &Sums, square_above: f64, mean: f64) -> Split {
+    fn variance(&self, below: &Sums, square_above: f64, mean: f64) -> f64 {
         let measured = below.square + square_above - mean * mean - below.noise_of(self.ray_flux);
-        Split { variance: measured.max(EVEN * mean * mean), ..Split::default() }
+        measured.max(EVEN * mean * mean)
     }
 }
 

@@ -110,12 +110,12 @@ impl Relaxation {
         }
     }
 
-    /// Gives incremental shooting this `share` of the rays that are left to reflected light, in the next complete solution. So rays of
-    /// emission and of reflection no longer carry the same, but light in this proportion.
-    pub fn set_share_of_incremental(&mut self, new: f64, ray_flux: [f64; 2]) {
+    /// Gives incremental shooting this share of the rays that are left to reflected light, in the next complete solution. So rays of
+    /// direct and of reflected light no longer carry the same flux [lm], but these.
+    pub fn set_share_of_incremental(&mut self, share_of_rays: f64, ray_flux: [f64; 2]) {
         for stage in &mut self.course.stages {
             if let Stage::Incremental { share, .. } = stage {
-                *share = new;
+                *share = share_of_rays;
             }
         }
         let most = ray_flux[0].max(ray_flux[1]);
