@@ -24,6 +24,8 @@ mod plan;
 mod spread;
 mod surplus;
 mod surroundings;
+#[cfg(test)]
+mod tests;
 
 use self::bundles::Bundles;
 use self::direct::Direct;
