@@ -3,10 +3,10 @@
 use crate::failure::Failure;
 use crate::input;
 use crate::interrupt::watch;
-use crate::numbers::{count, digits, percent, three_digits};
+use crate::numbers::{count, decimals_for, digits, percent};
 use crate::output::OpenFiles;
 use crate::terminal;
-use isolux_core::compare::{Comparison, compare};
+use isolux_core::compare::{Comparison, Means, compare};
 use isolux_core::{Error, Problem, Solution};
 use serde_json::json;
 use std::path::PathBuf;
@@ -18,7 +18,8 @@ Examples:
   isolux compare a.isolux b.isolux
 
 z is the difference of an element divided by its standard deviation. Of two independent, unbiased solutions with
-honest error bars z has mean 0 and standard deviation 1, and 0.3 % of the elements are beyond 3.";
+honest error bars z has mean 0 and standard deviation 1, and 0.3 % of the elements are beyond 3. Behind ± are \
+standard errors.";
 
 /// Compare two solutions of the same scene and elements
 ///
@@ -99,10 +100,14 @@ fn in_words(problem: &Problem, c: &Comparison) -> String {
     if a != b {
         text += &format!(", {} apart", percent(2.0 * (a - b).abs() / (a + b)));
     }
-    if let Some(z) = c.power_z_at_least.filter(|z| *z > 3.0) {
-        text += &format!("; that is at least {} standard deviations", three_digits(z));
-    }
     text.push('\n');
+    if let Some(means) = &c.mean {
+        text += &format!("  mean irradiance     {}\n", means_in_words(means));
+    }
+    if let Some(worst) = c.objects.iter().max_by(|a, b| a.means.z.abs().total_cmp(&b.means.z.abs())) {
+        text +=
+            &format!("  least alike object  {}, '{}'\n", means_in_words(&worst.means), terminal::harmless(&worst.name));
+    }
     text += &match c.z {
         None => "  z                   unknown: there are no error bars\n".to_owned(),
         Some(z) => format!(
@@ -114,4 +119,11 @@ fn in_words(problem: &Problem, c: &Comparison) -> String {
         ),
     };
     text
+}
+
+/// `312.1 ± 0.8 and 313.0 ± 0.9 lux, 0.75 standard deviations apart`, with standard errors.
+fn means_in_words(means: &Means) -> String {
+    let decimals = decimals_for(means.std_error[0].max(means.std_error[1]), 2);
+    let [a, b] = [0, 1].map(|k| format!("{:.decimals$} ± {:.decimals$}", means.irradiance[k], means.std_error[k]));
+    format!("{a} and {b} lux, {:.2} standard deviations apart", means.z.abs())
 }

@@ -3,6 +3,7 @@
 //! [`run`] takes the arguments and gives the exit code: 0 all went well, 2 bad input or usage, 130 interrupted, 1 anything
 //! else. What is asked for goes to stdout, everything else (progress, warnings, errors) to stderr.
 
+mod accuracy;
 mod arguments;
 mod check;
 mod compare;

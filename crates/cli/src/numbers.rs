@@ -39,6 +39,19 @@ pub fn parse_time(text: &str) -> Result<Duration, String> {
     Err("give a time like 90, 90s, 2min or 1.5h".to_owned())
 }
 
+/// Reads a share: `2%`, `0.5 %`, `0.02`.
+///
+/// # Errors
+/// A sentence, if `text` is not between 0 and 1, without these.
+pub fn parse_share(text: &str) -> Result<f64, String> {
+    let (digits, unit) = match text.strip_suffix('%') {
+        Some(percents) => (percents, 100.0),
+        None => (text, 1.0),
+    };
+    let share = digits.trim().parse::<f64>().map(|n| n / unit).unwrap_or(f64::NAN);
+    if share > 0.0 && share < 1.0 { Ok(share) } else { Err("give a share like 2%, 0.5% or 0.02".to_owned()) }
+}
+
 /// A count with separators: `1,234,567`.
 pub fn count(number: u64) -> String {
     let digits = number.to_string();
@@ -143,6 +156,16 @@ mod tests {
         }
         for text in ["", "0", "-1s", "s", "2 weeks", "inf", "1e9"] {
             assert!(parse_time(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn shares_are_read_as_people_write_them() {
+        for (text, share) in [("2%", 0.02), ("0.5 %", 0.005), ("0.02", 0.02), ("95%", 0.95), ("1e-3", 0.001)] {
+            assert_eq!(parse_share(text), Ok(share), "{text}");
+        }
+        for text in ["", "%", "0", "-1%", "2", "100%", "nan", "2 percent"] {
+            assert!(parse_share(text).is_err(), "{text}");
         }
     }
 

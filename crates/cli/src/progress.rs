@@ -1,6 +1,6 @@
 //! How far the work is: a bar on a terminal; in a pipe nothing, or a line now and then for those who ask.
 
-use crate::numbers::{in_words, percent, time, with_prefix};
+use crate::numbers::{in_words, percent, three_digits, time, with_prefix};
 use crate::terminal;
 use indicatif::{ProgressBar, ProgressStyle};
 use isolux_core::solvers::Progress;
@@ -150,6 +150,10 @@ fn in_short(progress: &Progress, share: f64, elapsed: Duration) -> String {
     let elapsed = elapsed.as_secs_f64();
     let rate = progress.rays as f64 / elapsed.max(1e-3);
     let error = progress.rms_error.filter(|e| e.is_finite()).map_or("unknown yet".to_owned(), percent);
+    let error = match progress.excess.filter(|excess| excess.is_finite()) {
+        Some(excess) => format!("{error}, {} times what is asked", three_digits(excess)),
+        None => error,
+    };
     let left = if share < 0.01 || elapsed < 0.5 {
         "estimating time".to_owned()
     } else {
@@ -180,6 +184,7 @@ mod tests {
             rays_in_all: Some(10_000_000),
             unshot: 0.25,
             rms_error: Some(0.0123),
+            excess: None,
         };
         let text = in_short(&progress, 0.5, Duration::from_secs(4));
         assert_eq!(text, "4 s left · error 1.23 % · unshot 25.0 % · 1.25M rays/s · gathering");

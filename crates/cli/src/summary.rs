@@ -1,12 +1,13 @@
 //! What a solve came to: for people in words and tables, for programs as one JSON object.
 
+use crate::accuracy::{self, CONFIDENCE, with_confidence};
 use crate::numbers::{count, decimals_for, percent, time};
 use crate::output::{self, Written};
 use crate::progress::rays_in_words;
 use crate::report::Table;
 use isolux_core::report::{ObjectSummary, per_object};
 use isolux_core::solvers::deterministic::DETERMINISTIC;
-use isolux_core::{Problem, Solution};
+use isolux_core::{Accuracy, Problem, Quantity, Solution};
 use isolux_io::export::json;
 use serde_json::{Map, Value, json};
 
@@ -29,6 +30,8 @@ pub enum Ended {
 pub struct Summary<'a> {
     pub problem: &'a Problem,
     pub solution: &'a Solution,
+    /// What was asked for.
+    pub accuracy: Option<Accuracy>,
     pub ended: Ended,
     /// Time of solving [s], without reading and writing.
     pub seconds: f64,
@@ -52,6 +55,15 @@ impl Summary<'_> {
                 percent(lost)
             ));
         }
+        if let Some(asked) = self.missed() {
+            let reached = asked.of.error_bound(self.problem, self.solution, asked.confidence);
+            let asked = percent(asked.error);
+            warnings.push(if reached.is_finite() {
+                format!("the error is {}, not {asked} as was asked for", percent(reached))
+            } else {
+                format!("the error is not known yet, so it may be more than the {asked} that was asked for")
+            });
+        }
         if self.ended == Ended::Interrupted {
             warnings.push("interrupted: this is the best result so far, less than was asked for".to_owned());
         }
@@ -62,6 +74,13 @@ impl Summary<'_> {
             );
         }
         warnings
+    }
+
+    /// The accuracy that was asked for, if it was not reached.
+    fn missed(&self) -> Option<Accuracy> {
+        let is_lit = self.solution.balance.emitted > 0.0;
+        let is_reached = |asked: &Accuracy| asked.excess(self.problem, self.solution) <= 1.0;
+        self.accuracy.filter(|asked| is_lit && !is_reached(asked))
     }
 
     fn is_deterministic(&self) -> bool {
@@ -88,6 +107,13 @@ impl Summary<'_> {
     /// One object, without a line break at its end.
     pub fn json(&self) -> String {
         let mut extras = Map::new();
+        if let Some(asked) = self.accuracy {
+            let reached = asked.of.error_bound(self.problem, self.solution, asked.confidence);
+            let of = accuracy::in_words(asked.of, &self.problem.scene);
+            let met = self.missed().is_none();
+            let asked = json!({ "asked": asked.error, "confidence": asked.confidence, "of": of, "reached": reached, "met": met });
+            extras.insert("accuracy".into(), asked);
+        }
         extras.insert("seconds".into(), json!(self.seconds));
         extras.insert("rays_per_second".into(), json!(self.solution.work.rays as f64 / self.seconds.max(1e-9)));
         extras.insert("threads".into(), json!(self.threads));
@@ -115,21 +141,34 @@ impl Summary<'_> {
         );
         text +=
             &format!(", {} {}, seed {}\n", self.threads, plural(self.threads, "thread"), self.solution.provenance.seed);
-        let error = self.solution.rms_error(self.problem);
-        if error.is_finite() {
-            text += &format!("Estimated error {} of the mean irradiance ", percent(error));
-            text += &format!("(RMS over all elements, from {} replicates)\n", work.replicates);
-            if error > LARGE_ERROR {
-                let rays = work.rays as f64 * (error / LARGE_ERROR).powi(2);
-                text += &format!("About {:.0} % would be left with --rays {}\n", 100.0 * LARGE_ERROR, round(rays));
-            }
-        }
+        text += &self.error();
         text += &self.balance();
         text += &self.objects(most_objects);
         if !self.outputs.is_empty() {
             text += &format!("\nWrote {}\n", output::in_words(self.outputs));
         }
         text
+    }
+
+    /// How accurate it is, and what more accuracy would cost.
+    fn error(&self) -> String {
+        let Some(certainty) = &self.solution.certainty else { return String::new() };
+        let asked = self.accuracy.unwrap_or(Accuracy { error: LARGE_ERROR, confidence: CONFIDENCE, of: Quantity::Rms });
+        let bound = asked.of.error_bound(self.problem, self.solution, asked.confidence);
+        if !bound.is_finite() {
+            return String::new();
+        }
+        let (what, confidence) = (accuracy::in_words(asked.of, &self.problem.scene), with_confidence(asked.confidence));
+        let work = self.solution.work;
+        let mut text =
+            format!("Error at most {} {confidence} ({what}, {} replicates)\n", percent(bound), work.replicates);
+        let margin = certainty.scene.margin(CONFIDENCE);
+        let decimals = decimals_for(margin, 2);
+        text += &format!("Mean irradiance {:.decimals$} ± {margin:.decimals$} lx (95 %)\n", certainty.scene.mean);
+        let next = if bound > asked.error { asked.error } else { 0.5 * bound };
+        let more = (bound / next).powi(2) - 1.0;
+        let (rays, seconds) = (round(more * work.rays as f64), time(more * self.seconds));
+        text + &format!("For {} it takes about {rays} more rays, {seconds}\n", percent(next))
     }
 
     fn balance(&self) -> String {
@@ -161,10 +200,11 @@ impl Summary<'_> {
         let shown = &objects[..most.min(objects.len())];
         let decimals = decimals_for(middle(shown.iter().map(|o| o.mean)), 4);
         let area_decimals = decimals_for(middle(shown.iter().map(|o| o.area)), 3);
-        let mut table = Table::new(&["object", "area [m²]", "mean", "min", "max"]);
-        for ObjectSummary { name, area, mean, min, max, .. } in shown {
-            let lux = |value: &f64| format!("{value:.decimals$}");
-            table.row(name, [format!("{area:.area_decimals$}"), lux(mean), lux(min), lux(max)]);
+        let mut table = Table::new(&["object", "area [m²]", "mean", "± 95 %", "min", "max"]);
+        for ObjectSummary { name, area, mean, min, max, certainty, .. } in shown {
+            let lux = |value: f64| format!("{value:.decimals$}");
+            let margin = certainty.map_or(String::new(), |mean| lux(mean.margin(CONFIDENCE)));
+            table.row(name, [format!("{area:.area_decimals$}"), lux(*mean), margin, lux(*min), lux(*max)]);
         }
         let mut text = format!("\nIrradiance [lux], largest objects first\n{}", table.lines());
         if shown.len() < objects.len() {

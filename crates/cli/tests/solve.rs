@@ -17,7 +17,9 @@ fn every_format_is_written_and_the_summary_says_so() {
         assert!(!folder.read(name).is_empty() && text.contains(name.as_str()), "{name}: {text}");
     }
     assert_eq!(folder.names().len(), names.len(), "nothing else is left behind");
-    for word in ["Estimated error", "emitted", "absorbed", "escaped", "floor", "mean"] {
+    for word in
+        ["Error at most", "95 % confidence", "Mean irradiance", "±", "emitted", "absorbed", "escaped", "floor", "mean"]
+    {
         assert!(text.contains(word), "{word}: {text}");
     }
     assert!(!text.contains('\x1b'), "no colours in a pipe");
@@ -118,4 +120,25 @@ fn elements_of_any_kind_can_be_asked_for() {
     };
     assert!((500..=1000).contains(&elements(&["--elements", "1k"])));
     assert!(elements(&["--max-edge", "0.5"]) > elements(&["--max-edge", "1"]));
+}
+
+#[test]
+fn a_solve_ends_when_it_is_as_accurate_as_was_asked_for() {
+    let folder = Folder::new();
+    let solve =
+        |arguments: &[&str]| folder.json(&[&["solve", "box", "--elements", "300", "--json"], arguments].concat());
+    let reached = |summary: &serde_json::Value| summary["accuracy"]["reached"].as_f64().unwrap();
+    let coarse = solve(&["--error", "10%"]);
+    assert!(reached(&coarse) <= 0.1 && coarse["accuracy"]["met"] == true, "{coarse}");
+    let fine = solve(&["--error", "2%", "--confidence", "0.99", "-o", "a.isolux"]);
+    assert!(reached(&fine) <= 0.02 && fine["rays"].as_u64() > coarse["rays"].as_u64(), "{fine}");
+    let object = solve(&["--error", "0.5%", "--error-of", "object:floor"]);
+    assert!(reached(&object) <= 0.005 && object["accuracy"]["of"] == "mean irradiance of 'floor'", "{object}");
+    let floor = object["objects"].as_array().unwrap().iter().find(|object| object["name"] == "floor").unwrap();
+    let share = floor["mean_error"]["std_error"].as_f64().unwrap() / floor["mean"].as_f64().unwrap();
+    assert!(share < 0.005 && 0.5 * share < reached(&object), "{floor}");
+
+    let limited = solve(&["--error", "0.01%", "--rays", "50k"]);
+    assert!(limited["rays"].as_u64().unwrap() < 60_000 && limited["accuracy"]["met"] == false, "{limited}");
+    assert!(limited["warnings"].to_string().contains("not 0.0100 % as was asked for"), "{limited}");
 }

@@ -4,8 +4,9 @@
 //! element: the relative RMS difference is `sqrt(sum A (a - b)² / sum A)` over the mean of `(a + b) / 2`; the score of an
 //! element is `z = (a - b) / sqrt(s² + t²)`, about standard normal if the solutions are independent, unbiased and honest.
 
+use crate::math::Estimate;
 use crate::solution::luminance_error;
-use crate::{Error, Problem, Solution};
+use crate::{Certainty, Error, Problem, Solution};
 
 /// The result of [`compare`].
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -18,12 +19,40 @@ pub struct Comparison {
     pub largest: Largest,
     /// Flux [lm] that leaves all surfaces, `sum A B`, in the first and in the second solution.
     pub power: [f64; 2],
-    /// At least so many standard deviations lie between the two powers. The errors of elements are correlated in ways
-    /// that a solution does not record, but the deviation of a sum is never larger than the sum of the deviations.
-    /// `None` while these are unknown or zero.
-    pub power_z_at_least: Option<f64>,
+    /// Of the whole scene; `None` while error bars of means are unknown.
+    pub mean: Option<Means>,
+    /// Of each object with elements.
+    pub objects: Vec<ObjectMeans>,
     /// Scores of the elements; `None` if no element has a known, positive standard error.
     pub z: Option<Scores>,
+}
+
+/// Two mean irradiances [lux].
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Means {
+    pub irradiance: [f64; 2],
+    pub std_error: [f64; 2],
+    /// Their difference over its standard deviation; 0 if both are zero.
+    pub z: f64,
+}
+
+/// Those of an object.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct ObjectMeans {
+    pub name: String,
+    #[serde(flatten)]
+    pub means: Means,
+}
+
+impl Means {
+    fn of(a: &Estimate, b: &Estimate) -> Means {
+        let (difference, deviation) = (a.mean - b.mean, a.std_error().hypot(b.std_error()));
+        Means {
+            irradiance: [a.mean, b.mean],
+            std_error: [a.std_error(), b.std_error()],
+            z: if difference == 0.0 { 0.0 } else { difference / deviation },
+        }
+    }
 }
 
 /// The element with the largest absolute difference, the first of them if there are several.
@@ -52,7 +81,7 @@ pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -
     same_problem(problem, other)?;
     let mesh = &problem.mesh;
     let (mut area, mut sum, mut sum_sq, mut variance) = (0.0, 0.0, 0.0, 0.0);
-    let (mut power, mut power_bound) = ([0.0; 2], 0.0);
+    let mut power = [0.0; 2];
     let mut largest = Largest::default();
     let mut scores = Vec::new();
     for e in mesh.elements() {
@@ -67,8 +96,6 @@ pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -
         for (power, solution) in power.iter_mut().zip([a, b]) {
             *power += element_area * solution.radiosity(problem, e).luminance_f64();
         }
-        let reflectivity = f64::from(mesh.reflectivity(e).max_channel());
-        power_bound += element_area * reflectivity * (errors[0] + errors[1]);
         if difference.abs() > (largest.irradiance[0] - largest.irradiance[1]).abs() {
             largest = Largest { element: e, irradiance: lux };
         }
@@ -77,16 +104,23 @@ pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -
         }
     }
     let relative = |sum_sq: f64| (sum_sq / area).sqrt() / (sum / area);
-    let power_z = (power[0] - power[1]).abs() / power_bound;
+    let certainties = a.certainty.as_ref().zip(b.certainty.as_ref());
     Ok(Comparison {
         elements: mesh.len(),
         rms: relative(sum_sq),
         expected_rms: relative(variance),
         largest,
         power,
-        power_z_at_least: power_z.is_finite().then_some(power_z),
+        mean: certainties.map(|(a, b)| Means::of(&a.scene, &b.scene)),
+        objects: certainties.map_or(Vec::new(), |(a, b)| means_of_objects(problem, a, b)),
         z: Scores::of(&scores),
     })
+}
+
+fn means_of_objects(problem: &Problem, a: &Certainty, b: &Certainty) -> Vec<ObjectMeans> {
+    let objects = problem.scene.objects.iter().zip(a.objects.iter().zip(&b.objects));
+    let lit = objects.filter(|(_, (a, _))| !a.mean.is_nan());
+    lit.map(|(object, (a, b))| ObjectMeans { name: object.name.clone(), means: Means::of(a, b) }).collect()
 }
 
 impl Scores {
@@ -144,6 +178,7 @@ mod tests {
         Solution {
             irradiance: values(0).collect(),
             std_error: values(1).collect(),
+            certainty: None,
             work: Work::default(),
             balance: Balance::default(),
             provenance: Provenance {
@@ -172,7 +207,7 @@ mod tests {
         assert_eq!(problem.mesh.triangle(c.largest.element), 0);
         assert!(close(c.largest.irradiance[0], 10.0) && close(c.largest.irradiance[1], 20.0));
         assert!(close(c.power[0], 35.0) && close(c.power[1], 40.0));
-        assert!(close(c.power_z_at_least.unwrap(), 5.0 / 3.5));
+        assert!(c.mean.is_none() && c.objects.is_empty(), "no replicates have told the means");
         let z = c.z.unwrap();
         assert_eq!(z.elements, 1, "an element without an error has no score");
         assert!(close(z.mean, -2.0) && close(z.std_dev, 0.0) && z.beyond_3 == 0.0);
@@ -192,8 +227,21 @@ mod tests {
         let problem = problem();
         let a = solution(&problem, [10.0, f32::NAN], [20.0, f32::NAN]);
         let c = compare(&problem, &a, &problem, &a).unwrap();
-        assert_eq!((c.rms, c.largest, c.power_z_at_least, c.z), (0.0, Largest::default(), None, None));
+        assert_eq!((c.rms, c.largest, c.z), (0.0, Largest::default(), None));
         assert!(c.expected_rms.is_nan());
+    }
+
+    #[test]
+    fn means_differ_by_so_many_standard_deviations() {
+        let problem = problem();
+        let certain = |mean: f64, error: f64| {
+            let scene = Estimate { mean, variance: error * error, freedom: 7.0 };
+            let ways = crate::certainty::Ways::default();
+            let certainty = Certainty { scene, objects: vec![scene], mean_square: 1.0, freedom: 7.0, ways };
+            Solution { certainty: Some(certainty), ..solution(&problem, [10.0, 1.0], [20.0, 1.0]) }
+        };
+        let c = compare(&problem, &certain(10.0, 3.0), &problem, &certain(20.0, 4.0)).unwrap();
+        assert!(close(c.mean.unwrap().z, -2.0) && c.objects[0].name == "sheet" && close(c.objects[0].means.z, -2.0));
     }
 
     #[test]

@@ -4,6 +4,8 @@
 //! `math -> {scene, sampling} -> mesh -> geometry -> transport -> form_factors -> solvers -> solution -> view`
 //! (see ARCHITECTURE.md). Units are SI and photometric throughout: metres, lumens, lux (lm/m²), candela.
 
+mod accuracy;
+mod certainty;
 pub mod choice;
 pub mod compare;
 mod error;
@@ -21,6 +23,8 @@ pub mod solvers;
 pub mod transport;
 pub mod view;
 
+pub use accuracy::{Accuracy, Quantity};
+pub use certainty::Certainty;
 pub use error::Error;
 pub use problem::Problem;
 pub use solution::Solution;

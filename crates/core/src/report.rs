@@ -1,11 +1,9 @@
 //! What a solution says about each named object: how much light it gets, and what it does with it.
 
+use crate::math::Estimate;
 use crate::{Problem, Solution};
 
 /// Light on one object, both sides of two-sided surfaces counted; everything is luminance.
-///
-/// There is no standard error of the mean: errors of neighbouring elements are correlated (they are lit by the same
-/// rays), so it does not follow from the errors of the elements.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct ObjectSummary {
     /// Index into [`crate::scene::Scene::objects`].
@@ -18,12 +16,29 @@ pub struct ObjectSummary {
     pub mean: f64,
     pub min: f64,
     pub max: f64,
+    /// The error bar of the mean [lux], if replicates have told it.
+    #[serde(rename = "mean_error", serialize_with = "error_bar")]
+    pub certainty: Option<Estimate>,
     /// Flux sent out by the object itself [lm].
     pub emitted: f64,
     /// Flux that falls on it [lm], `sum A E`.
     pub incident: f64,
     /// Flux that it reflects [lm], `sum A rho E`.
     pub reflected: f64,
+}
+
+/// The error bar of an estimate, if there is one: its standard error, and how many degrees of freedom that has.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn error_bar<S: serde::Serializer>(estimate: &Option<Estimate>, serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(serde::Serialize)]
+    struct ErrorBar {
+        std_error: f64,
+        freedom: f64,
+    }
+    let bar = estimate.map(|estimate| ErrorBar { std_error: estimate.std_error(), freedom: estimate.freedom });
+    serde::Serialize::serialize(&bar, serializer)
 }
 
 /// One summary for each object that has elements, in the order of the scene's objects.
@@ -37,6 +52,7 @@ pub fn per_object(problem: &Problem, solution: &Solution) -> Vec<ObjectSummary> 
         mean: 0.0,
         min: f64::INFINITY,
         max: f64::NEG_INFINITY,
+        certainty: solution.certainty.as_ref().and_then(|certainty| certainty.objects.get(k).copied()),
         emitted: 0.0,
         incident: 0.0,
         reflected: 0.0,
@@ -93,6 +109,7 @@ mod tests {
         let solution = Solution {
             irradiance: problem.mesh.elements().map(|e| Rgb::grey(lux(e))).collect(),
             std_error: vec![Rgb::BLACK; problem.mesh.len()],
+            certainty: None,
             work: Work::default(),
             balance: Balance::default(),
             provenance: Provenance {

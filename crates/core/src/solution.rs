@@ -1,7 +1,7 @@
 //! The result: how much light falls on every element, how sure that is, and where all the light went.
 
-use crate::Problem;
 use crate::math::Rgb;
+use crate::{Certainty, Problem};
 
 /// Irradiance of every element with its standard error. A solution cannot be made without its provenance.
 ///
@@ -13,6 +13,8 @@ pub struct Solution {
     pub irradiance: Vec<Rgb>,
     /// Standard error of the irradiance [lux] per element and channel; NaN while there are fewer than two replicates.
     pub std_error: Vec<Rgb>,
+    /// How sure the sums are; `None` while there are fewer than two replicates, and of deterministic methods.
+    pub certainty: Option<Certainty>,
     pub work: Work,
     pub balance: Balance,
     pub provenance: Provenance,
@@ -61,24 +63,11 @@ impl Solution {
         problem.mesh.emission(e) + problem.mesh.reflectivity(e) * self.irradiance[e as usize]
     }
 
-    /// Estimated error of the whole solution, see [`relative_error`].
-    pub fn rms_error(&self, problem: &Problem) -> f64 {
-        relative_error(problem, |e| (self.irradiance[e as usize], self.std_error[e as usize]))
+    /// The area-weighted RMS error that is expected of luminance irradiance, relative to its mean: [`Certainty::rms`]. NaN while it is
+    /// unknown, and in the dark.
+    pub fn rms_error(&self) -> f64 {
+        self.certainty.as_ref().map_or(f64::NAN, Certainty::rms)
     }
-}
-
-/// The area-weighted RMS of the standard errors over the area-weighted mean, both of luminance irradiance. NaN while the
-/// standard errors are unknown, or in a dark scene. `estimate(e)` is irradiance and standard error [lux] of element e.
-pub fn relative_error(problem: &Problem, estimate: impl Fn(u32) -> (Rgb, Rgb)) -> f64 {
-    let (mut area, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
-    for e in problem.mesh.elements() {
-        let a = f64::from(problem.mesh.area(e));
-        let (irradiance, std_error) = estimate(e);
-        area += a;
-        sum += a * irradiance.luminance_f64();
-        sum_sq += a * f64::from(luminance_error(std_error)).powi(2);
-    }
-    (sum_sq / area).sqrt() / (sum / area)
 }
 
 /// Standard error of the luminance, its channels taken as fully correlated (they ride on the same rays).

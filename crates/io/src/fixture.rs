@@ -91,6 +91,7 @@ pub fn made_up(problem: &Problem) -> Solution {
     Solution {
         irradiance: problem.mesh.elements().map(|e| Rgb::new(value(e, 1.0), value(e, 2.0), value(e, 3.0))).collect(),
         std_error,
+        certainty: None,
         work: Work { rays: 12_345, replicates: 8 },
         balance: Balance { emitted: 100.0, absorbed: 90.0, escaped: 6.0, back_face: 3.0, unshot: 1.0 },
         provenance: Provenance {

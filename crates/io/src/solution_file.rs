@@ -21,7 +21,7 @@ use std::io::{Read, Write};
 use xxhash_rust::xxh3::Xxh3;
 
 const MAGIC: &[u8; 6] = b"ISOLUX";
-const VERSION: u16 = 2;
+const VERSION: u16 = 3;
 const HEADER: usize = 24;
 /// Deflate never packs more bytes than this into one (RFC 1951: 258 bytes in two bits).
 const HIGHEST_RATIO: u64 = 1032;

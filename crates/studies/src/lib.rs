@@ -51,6 +51,7 @@ pub const STUDIES: &[Study] = studies![
     "cost",
     "ray-count",
     "speed",
+    "coverage",
 ];
 
 impl Study {

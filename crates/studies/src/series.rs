@@ -7,7 +7,7 @@ use isolux_core::solvers::monte_carlo::Method;
 use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Survival, Walk};
 
 /// What a series may tell its measure besides.
-const OF_MEASURES: [&str; 4] = ["estimate", "rays", "factors", "worst-tenth"];
+const OF_MEASURES: [&str; 5] = ["estimate", "rays", "factors", "worst-tenth", "of"];
 
 impl Series {
     /// What it says of `axis`, if anything.

@@ -45,6 +45,7 @@ quick! {
     cost = "cost",
     ray_count = "ray-count",
     speed = "speed",
+    coverage = "coverage",
 }
 
 /// Runs the study of ray counts until `points` are measured.

@@ -2,6 +2,8 @@
 
 use crate::ensemble::Exact;
 use crate::projections::Deviation;
+use isolux_core::math::Rgb;
+use isolux_core::math::estimate::student;
 use isolux_core::math::moments::Moments;
 use isolux_core::{Problem, Solution};
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -11,7 +13,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 ///
 /// - *variance*: the mean over elements of t² is `(R - 1) / (R - 3)`;
 /// - *tails*: the shares of |t| above the 10 %, 1 % and 0.1 % points of Student's t with R - 1 degrees of freedom;
-/// - *error*: the sum by area of squared errors is that of the squared standard errors, as in [`Solution::rms_error`].
+/// - *error*: the sum by area of squared errors is that of the squared standard errors.
 pub fn of_student(problem: &Problem, runs: &[Solution], exact: &Exact, replicates: u32) -> Vec<Deviation> {
     let dof = f64::from(replicates) - 1.0;
     let student = StudentsT::new(0.0, 1.0, dof).expect("at least two replicates");
@@ -41,6 +43,43 @@ pub fn of_error(problem: &Problem, runs: &[Solution], exact: &Exact) -> Deviatio
     };
     deviation("squared error", &runs.iter().map(excess).collect(), 0.0)
 }
+
+/// As [`of_student`], of the mean irradiances of the scene and of its objects: mean t², and the share beyond the 10 % point.
+///
+/// # Panics
+/// If a run has no certainty.
+pub fn of_objects(problem: &Problem, runs: &[Solution], exact: &Exact, replicates: u32) -> Vec<Deviation> {
+    let dof = f64::from(replicates) - 1.0;
+    let mesh = &problem.mesh;
+    let (mut sums, mut areas) = (vec![0.0; problem.scene.objects.len()], vec![0.0; problem.scene.objects.len()]);
+    for e in mesh.elements() {
+        let object = problem.scene.triangles[mesh.triangle(e) as usize].object as usize;
+        let [r, g, b] = exact[e as usize].map(|value| value as f32);
+        sums[object] += f64::from(mesh.area(e)) * Rgb::new(r, g, b).luminance_f64();
+        areas[object] += f64::from(mesh.area(e));
+    }
+    let scene = sums.iter().sum::<f64>() / areas.iter().sum::<f64>();
+    let exact = || std::iter::once(scene).chain(sums.iter().zip(&areas).map(|(sum, area)| sum / area));
+    let scores = |run: &Solution| -> Vec<f64> {
+        let certainty = run.certainty.as_ref().expect("replicates enough");
+        let estimates = std::iter::once(&certainty.scene).chain(&certainty.objects);
+        estimates.zip(exact()).map(|(estimate, exact)| (estimate.mean - exact) / estimate.std_error()).collect()
+    };
+    let mean = |run: &Solution, f: &dyn Fn(f64) -> f64| {
+        let scores = scores(run);
+        scores.iter().map(|&t| f(t)).sum::<f64>() / scores.len() as f64
+    };
+    let bound = student(0.9, dof);
+    let squares = runs.iter().map(|run| mean(run, &|t| t * t)).collect();
+    let beyond = runs.iter().map(|run| mean(run, &|t| f64::from(u8::from(t.abs() > bound)))).collect();
+    vec![
+        deviation("mean t² of objects", &squares, dof / (dof - 2.0)),
+        deviation("share of objects beyond the 0.1 point", &beyond, 0.1),
+    ]
+}
+
+/// How many deviations [`of_objects`] gives.
+pub const COMPARISONS_OF_OBJECTS: u32 = 2;
 
 /// How many deviations [`of_student`] gives.
 pub const COMPARISONS: u32 = 5;

@@ -8,19 +8,26 @@ use std::path::{Path, PathBuf};
 /// its own level or higher.
 const LAYERS: &[(usize, &[&str])] = &[
     (0, &["math", "error", "VERSION"]),
-    (1, &["choice"]),
+    (1, &["choice", "certainty"]),
     (2, &["scene", "sampling"]),
     (3, &["mesh"]),
     (4, &["geometry"]),
     (5, &["problem"]),
     (6, &["transport", "solution"]),
-    (7, &["form_factors"]),
+    (7, &["form_factors", "accuracy"]),
     (8, &["solvers"]),
     (9, &["run", "view", "report", "compare"]),
 ];
 
 /// Names re-exported at the root, and where they live.
-const ROOT_NAMES: &[(&str, &str)] = &[("Problem", "problem"), ("Solution", "solution"), ("Error", "error")];
+const ROOT_NAMES: &[(&str, &str)] = &[
+    ("Problem", "problem"),
+    ("Solution", "solution"),
+    ("Error", "error"),
+    ("Certainty", "certainty"),
+    ("Accuracy", "accuracy"),
+    ("Quantity", "accuracy"),
+];
 
 #[test]
 fn imports_of_the_core_run_one_way() {

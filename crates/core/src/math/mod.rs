@@ -1,6 +1,7 @@
-//! Small mathematics that everything else stands on: colour, frames, warps, moments, spherical triangles, whole parts.
+//! Small mathematics that everything else stands on: colour, error bars, frames, warps, moments, spherical triangles, whole parts.
 
 pub mod color;
+pub mod estimate;
 pub mod frame;
 pub mod hash;
 pub mod moments;
@@ -9,5 +10,6 @@ pub mod warp;
 pub mod whole;
 
 pub use color::Rgb;
+pub use estimate::Estimate;
 pub use frame::Frame;
 pub use spherical_triangle::SphericalTriangle;

@@ -8,6 +8,7 @@ mod gathering;
 pub mod monte_carlo;
 mod replicates;
 mod shooting;
+mod totals;
 
 pub use direct_light::DirectLight;
 pub use monte_carlo::MonteCarlo;
@@ -103,4 +104,6 @@ pub struct Progress {
     pub unshot: f64,
     /// [`Solution::rms_error`] so far, if known.
     pub rms_error: Option<f64>,
+    /// How many times as large the error is as the one that is asked for, if one is, and it is known.
+    pub excess: Option<f64>,
 }

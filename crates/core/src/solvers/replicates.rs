@@ -35,16 +35,24 @@ impl Replicates {
     }
 
     /// Adds one replicate that took `rays` rays, its estimates in the order of the elements, whose areas are `area(e)` [m²].
-    pub fn push(&mut self, rays: u64, values: impl Iterator<Item = Rgb>, area: impl Fn(u32) -> f32) {
+    ///
+    /// The area-weighted mean square of its distance from the mean of those before, of luminance, times `(n - 1) / n`: an
+    /// estimate of a replicate's variance, independent of those before. None for the first of a round.
+    pub fn push(&mut self, rays: u64, values: impl Iterator<Item = Rgb>, area: impl Fn(u32) -> f32) -> Option<f64> {
         self.count += 1;
         self.rays += rays;
         let share = 1.0 / self.count as f32;
-        for ((mean, sum), value) in self.mean.iter_mut().zip(&mut self.sum_sq_dev).zip(values) {
+        let (mut square, mut total_area) = (0.0, 0.0);
+        for (e, ((mean, sum), value)) in (0..).zip(self.mean.iter_mut().zip(&mut self.sum_sq_dev).zip(values)) {
             let delta = value - *mean;
             *mean += delta * share;
             *sum += delta * (value - *mean);
+            let area = f64::from(area(e));
+            square += area * delta.luminance_f64().powi(2);
+            total_area += area;
         }
         self.precision = self.measure_precision(area);
+        (self.count > 1).then_some(square / total_area * (1.0 - f64::from(share)))
     }
 
     /// What the running round is worth: one over its variance, relative to each element's mean and the scene's, and at most 1 for an
@@ -80,6 +88,11 @@ impl Replicates {
         (self.count, self.rays) = (0, 0);
     }
 
+    /// Weight of the running round in the estimate.
+    pub fn weight(&self) -> f64 {
+        self.precision / (self.precision + self.earlier_precision)
+    }
+
     /// Replicates that have entered the estimate.
     pub fn count(&self) -> u32 {
         self.earlier_count + if self.usable() { self.count } else { 0 }
@@ -104,7 +117,7 @@ impl Replicates {
         if self.earlier_mean.is_empty() {
             return (self.mean[e], variance);
         }
-        let now = (self.precision / (self.precision + self.earlier_precision)) as f32;
+        let now = self.weight() as f32;
         let mean = self.mean[e] * now + self.earlier_mean[e] * (1.0 - now);
         (mean, variance * (now * now) + self.earlier_variance[e] * ((1.0 - now) * (1.0 - now)))
     }

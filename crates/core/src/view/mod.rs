@@ -43,6 +43,13 @@ mod tests {
             version: crate::VERSION.to_owned(),
         };
         let std_error = vec![Rgb::grey(f32::NAN); irradiance.len()];
-        Solution { irradiance, std_error, work: Work::default(), balance: Balance::default(), provenance }
+        Solution {
+            irradiance,
+            std_error,
+            certainty: None,
+            work: Work::default(),
+            balance: Balance::default(),
+            provenance,
+        }
     }
 }

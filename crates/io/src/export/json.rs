@@ -46,7 +46,12 @@ pub fn summary(problem: &Problem, solution: &Solution, extras: &Map<String, Valu
         "seed": provenance.seed,
         "rays": work.rays,
         "replicates": work.replicates,
-        "rms_error_estimate": solution.rms_error(problem),
+        "rms_error_estimate": solution.rms_error(),
+        "mean": solution.certainty.as_ref().map(|certainty| certainty.scene.mean),
+        "mean_error": solution.certainty.as_ref().map(|certainty| {
+            let scene = certainty.scene;
+            json!({ "std_error": scene.std_error(), "freedom": scene.freedom })
+        }),
         "balance": {
             "emitted": balance.emitted,
             "absorbed": balance.absorbed,
@@ -56,7 +61,7 @@ pub fn summary(problem: &Problem, solution: &Solution, extras: &Map<String, Valu
             "residual": balance.residual(),
         },
         "objects": report::per_object(problem, solution),
-        "units": { "area": "m²", "mean, min, max": "lux", "balance, emitted, incident, reflected": "lm" },
+        "units": { "area": "m²", "mean, mean_error, min, max": "lux", "balance, emitted, incident, reflected": "lm" },
     });
     for (name, value) in extras {
         summary[name.as_str()] = value.clone();

@@ -50,7 +50,7 @@ impl Measure for Cost {
         let start = Instant::now();
         let Some(solution) = task.solve(solver.as_mut(), &problem) else { return Ok(None) };
         let seconds = start.elapsed().as_secs_f64();
-        let times = if entry.is_some() { 1.0 } else { (solution.rms_error(&problem) / ACCURACY).powi(2) };
+        let times = if entry.is_some() { 1.0 } else { (solution.rms_error() / ACCURACY).powi(2) };
         let values = vec![elements as f64, solution.work.rays as f64 * times, seconds * times];
         Ok(Some(vec![task.row(task.point.at, values)]))
     }

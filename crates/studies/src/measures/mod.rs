@@ -3,6 +3,7 @@
 mod bins;
 mod convergence;
 mod cost;
+mod coverage;
 mod element_variance;
 mod form_factor_variance;
 mod ray_count;
@@ -41,6 +42,7 @@ pub const MEASURES: &[(&str, Make)] = &[
     ("element-variance", || Box::new(element_variance::ElementVariance::default())),
     ("cost", || Box::new(cost::Cost)),
     ("ray-count", || Box::new(ray_count::RayCount)),
+    ("coverage", || Box::new(coverage::Coverage)),
     ("speed", || Box::new(speed::Speed)),
 ];
 

@@ -44,7 +44,7 @@ impl Measure for RayCount {
         ratios.sort_by(f64::total_cmp);
         let rank = |share: f64| ratios[((ratios.len() - 1) as f64 * share) as usize];
         let kept = ratios.iter().filter(|&&ratio| ratio <= 1.0).count() as f64 / ratios.len() as f64;
-        let error = solution.rms_error(&problem) * one;
+        let error = solution.rms_error() * one;
         Ok(Some(vec![task.row(task.point.at, vec![rays, rank(0.5), rank(0.9), rank(1.0), kept, error])]))
     }
 }

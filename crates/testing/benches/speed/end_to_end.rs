@@ -58,5 +58,5 @@ fn reach(problem: &Problem, name: &str) -> Result<Reached> {
         true => ControlFlow::Continue(()),
         false => ControlFlow::Break(()),
     });
-    Ok(Reached { seconds: start.elapsed().as_secs_f64(), rays: solution.work.rays, error: solution.rms_error(problem) })
+    Ok(Reached { seconds: start.elapsed().as_secs_f64(), rays: solution.work.rays, error: solution.rms_error() })
 }

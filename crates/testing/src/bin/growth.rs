@@ -58,7 +58,7 @@ fn cost(problem: &Problem) -> Result<Cost> {
             MonteCarlo::new(problem, Settings { method, replicates, budget, seed, ..Settings::default() })?;
         let start = Instant::now();
         let solution = run(&mut solver, problem, |_| ControlFlow::Continue(()));
-        let times = (solution.rms_error(problem) / ACCURACY).powi(2);
+        let times = (solution.rms_error() / ACCURACY).powi(2);
         least.seconds = least.seconds.min(start.elapsed().as_secs_f64() * times);
         least.rays = least.rays.min(solution.work.rays as f64 * times);
     }

@@ -73,7 +73,7 @@ fn solve(solver: &mut dyn Solver, problem: &Problem) -> Solution {
 
 /// Rays and seconds of a run, its RMS error, the one it states itself, and that of the reference.
 fn measure(problem: &Problem, reference: &Solution, make: impl Fn(u64) -> Result<Box<dyn Solver>>) -> Result<String> {
-    let own = reference.rms_error(problem);
+    let own = reference.rms_error();
     let (mut rays, mut seconds, mut square, mut stated, mut runs) = (0, 0.0, 0.0, 0.0, 0.0);
     for seed in SEEDS {
         let start = Instant::now();
@@ -81,7 +81,7 @@ fn measure(problem: &Problem, reference: &Solution, make: impl Fn(u64) -> Result
         seconds += start.elapsed().as_secs_f64();
         rays += solution.work.rays;
         square += difference(problem, &solution, reference).powi(2) - own.powi(2);
-        stated += solution.rms_error(problem).powi(2);
+        stated += solution.rms_error().powi(2);
         runs += 1.0;
         if solution.work.replicates == 0 {
             break;

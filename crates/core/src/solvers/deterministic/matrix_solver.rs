@@ -159,6 +159,7 @@ impl<M: Method> Solver for MatrixSolver<M> {
         Solution {
             irradiance: irradiance.iter().map(|&e| to_rgb(e)).collect(),
             std_error: vec![Rgb::grey(f32::NAN); irradiance.len()],
+            certainty: None,
             work: Work::default(),
             balance,
             provenance: provenance(problem, &self.name, parameters, seed),
@@ -174,7 +175,7 @@ impl<M: Method> Solver for MatrixSolver<M> {
                 (self.method.stage(), self.elements, unshot)
             }
         };
-        Progress { stage, rays: done, rays_in_all: Some(self.elements), unshot, rms_error: None }
+        Progress { stage, rays: done, rays_in_all: Some(self.elements), unshot, rms_error: None, excess: None }
     }
 }
 

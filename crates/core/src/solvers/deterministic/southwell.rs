@@ -160,6 +160,7 @@ impl Solver for Southwell {
         Solution {
             irradiance: self.irradiance.iter().map(|&e| to_rgb(plus(e, ambient))).collect(),
             std_error: vec![Rgb::grey(f32::NAN); self.irradiance.len()],
+            certainty: None,
             work: Work { rays: self.rays, replicates: 0 },
             balance: Balance { absorbed: self.surfaces.absorbed(&self.irradiance), ..self.flux },
             provenance: provenance(problem, NAME, parameters, factors.seed),
@@ -168,6 +169,6 @@ impl Solver for Southwell {
 
     fn progress(&self) -> Progress {
         let unshot = self.flux.unshot / self.flux.emitted.max(f64::MIN_POSITIVE);
-        Progress { stage: "shooting", rays: self.rays, rays_in_all: None, unshot, rms_error: None }
+        Progress { stage: "shooting", rays: self.rays, rays_in_all: None, unshot, rms_error: None, excess: None }
     }
 }

@@ -25,10 +25,11 @@ pub use settings::{Budget, LightPart, Settings};
 use self::complete::CompleteSolution;
 use self::experience::Experience;
 use super::replicates::Replicates;
+use super::totals::Totals;
 use super::{Part, Progress, Solver, budget};
 use crate::math::Rgb;
 use crate::math::hash::derive;
-use crate::solution::{Balance, Provenance, Solution, Work, relative_error};
+use crate::solution::{Balance, Provenance, Solution, Work};
 use crate::transport::Leaving;
 use crate::{Error, Problem};
 use std::ops::Range;
@@ -50,6 +51,7 @@ pub struct MonteCarlo {
     /// Rays of the whole run, if it has an end.
     rays_in_all: Option<u64>,
     replicates: Replicates,
+    totals: Totals,
     /// Number of the running replicate.
     replicate: u32,
     complete: Box<dyn CompleteSolution>,
@@ -57,7 +59,10 @@ pub struct MonteCarlo {
     /// Sum of the balances of the finished replicates [lm].
     balance: Balance,
     rays: u64,
+    finished: bool,
     rms_error: Option<f64>,
+    /// How much larger the error is than the one that is asked for.
+    excess: Option<f64>,
 }
 
 impl MonteCarlo {
@@ -74,15 +79,23 @@ impl MonteCarlo {
         }
         let rays_in_all = match settings.budget {
             Budget::Heuristic => Some(budget::rays(&problem.mesh)),
-            Budget::Rays(rays) if rays < u64::from(settings.replicates) => {
+            Budget::Rays(rays) | Budget::Accuracy { most_rays: Some(rays), .. }
+                if rays < u64::from(settings.replicates) =>
+            {
                 return parameter("rays", rays, "every replicate needs at least one ray, so ask for more");
             }
             Budget::Rays(rays) => Some(rays),
-            Budget::Endless => None,
+            Budget::Accuracy { .. } if settings.replicates == 1 => {
+                return parameter("replicates", 1, "at least 8 are needed to know the error");
+            }
+            Budget::Accuracy { .. } | Budget::Endless => None,
         };
         // A first round of a few rays for each element: a first answer soon, with its error bar.
-        let rays_in_round =
-            rays_in_all.unwrap_or((4 * problem.mesh.len() as u64).max(1000 * u64::from(settings.replicates)));
+        let first = (4 * problem.mesh.len() as u64).max(1000 * u64::from(settings.replicates));
+        let rays_in_round = match settings.budget {
+            Budget::Accuracy { most_rays: Some(rays), .. } => first.min(rays),
+            _ => rays_in_all.unwrap_or(first),
+        };
         let most_each = most_rays_each(problem, &settings);
         let replicates_in_round =
             rays_in_round.div_ceil(most_each).clamp(settings.replicates.into(), u32::MAX.into()) as u32;
@@ -96,19 +109,21 @@ impl MonteCarlo {
             rays_each,
             rays_in_all,
             replicates: Replicates::new(problem.mesh.len()),
+            totals: Totals::default(),
             replicate: 0,
             complete,
             experience,
             balance: Balance::default(),
             rays: 0,
+            finished: false,
             rms_error: None,
+            excess: None,
         })
     }
 
-    /// Whether the round that was asked for is complete, or there is no light at all.
+    /// Whether there is what was asked for, or no light at all.
     fn is_finished(&self) -> bool {
-        let complete = self.settings.budget != Budget::Endless && self.replicate == self.replicates_in_round;
-        complete || self.is_dark()
+        self.finished || self.is_dark()
     }
 
     fn is_dark(&self) -> bool {
@@ -119,35 +134,51 @@ impl MonteCarlo {
     fn next_replicate(&mut self, problem: &Problem) {
         let complete = self.complete.as_ref();
         let irradiance = problem.mesh.elements().map(|e| complete.irradiance(problem, e));
-        self.replicates.push(complete.rays(), irradiance, |e| problem.mesh.area(e));
+        let square = self.replicates.push(complete.rays(), irradiance, |e| problem.mesh.area(e));
+        self.totals.push(problem, |e| complete.irradiance(problem, e), square);
         self.experience = complete.experience();
         self.balance = self.balance + complete.balance();
         self.replicate += 1;
-        if self.replicates.count_in_round() >= 2 {
-            self.rms_error = Some(relative_error(problem, |e| {
-                let (mean, variance) = self.replicates.estimate(e);
-                (mean, variance.map(f32::sqrt))
-            }));
+        if let Some(certainty) = self.totals.certainty(self.replicates.weight()) {
+            self.rms_error = Some(certainty.rms());
+        }
+        if self.replicates.count_in_round() == self.replicates_in_round {
+            self.next_round(problem);
         }
         if self.is_finished() {
             return self.complete.retire();
-        }
-        if self.settings.budget == Budget::Endless && self.replicates.count_in_round() == self.replicates_in_round {
-            self.replicates.close_round();
-            self.rays_each = (2 * self.rays_each).min(most_rays_each(problem, &self.settings));
         }
         let seed = derive(self.settings.seed, u64::from(self.replicate));
         self.complete.restart(problem, seed, self.rays_each, &self.experience);
     }
 
+    /// Decides whether the round that is complete was the last one, or how large the next one is.
+    fn next_round(&mut self, problem: &Problem) {
+        let most_each = most_rays_each(problem, &self.settings);
+        match self.settings.budget {
+            Budget::Heuristic | Budget::Rays(_) => self.finished = true,
+            Budget::Endless => self.rays_each = (2 * self.rays_each).min(most_each),
+            Budget::Accuracy { accuracy, most_rays } => {
+                let excess = accuracy.excess(problem, &self.solution(problem));
+                let left = most_rays.map_or(u64::MAX, |most| most.saturating_sub(self.rays));
+                self.excess = Some(excess);
+                self.finished = excess <= 1.0 || left < u64::from(self.settings.replicates);
+                let round = rays_of_next_round(self.rays, excess).min(left);
+                self.rays_in_all = Some(self.rays + if self.finished { 0 } else { round });
+                self.replicates_in_round =
+                    round.div_ceil(most_each).clamp(self.settings.replicates.into(), u32::MAX.into()) as u32;
+                self.rays_each = round.div_ceil(self.replicates_in_round.into());
+            }
+        }
+        if !self.finished {
+            self.totals.close_round(self.replicates.weight());
+            self.replicates.close_round();
+        }
+    }
+
     fn provenance(&self, problem: &Problem) -> Provenance {
-        let (name, value) = match self.settings.budget {
-            Budget::Heuristic => ("rays", "heuristic".to_owned()),
-            Budget::Rays(rays) => ("rays", rays.to_string()),
-            Budget::Endless => ("rounds", "doubling".to_owned()),
-        };
-        let mut parameters =
-            vec![(name.to_owned(), value), ("replicates".to_owned(), self.replicates_in_round.to_string())];
+        let mut parameters = self.settings.budget.parameters();
+        parameters.push(("replicates".to_owned(), self.settings.replicates.to_string()));
         if self.settings.method.has_leaving() {
             parameters.push(("leaving".to_owned(), self.settings.leaving.name().to_owned()));
         }
@@ -193,6 +224,7 @@ impl Solver for MonteCarlo {
         Solution {
             irradiance: problem.mesh.elements().map(mean).collect(),
             std_error: problem.mesh.elements().map(std_error).collect(),
+            certainty: self.totals.certainty(self.replicates.weight()),
             work: Work { rays: self.rays, replicates: self.replicates.count() },
             balance,
             provenance: self.provenance(problem),
@@ -209,8 +241,17 @@ impl Solver for MonteCarlo {
                 unshot / emitted.max(f64::MIN_POSITIVE)
             },
             rms_error: self.rms_error,
+            excess: self.excess,
         }
     }
+}
+
+/// Rays of the round that shall bring the error down to what is asked for, where it is `excess` times as large after so many
+/// `rays`: it falls with the root of the rays. A little more than that, so that it need not be tried again; not many times as many, for the
+/// error is not known well after few, and not very few, for a round has its cost.
+fn rays_of_next_round(rays: u64, excess: f64) -> u64 {
+    let (rays, excess) = (rays as f64, if excess.is_nan() { f64::INFINITY } else { excess });
+    ((1.1 * excess * excess - 1.0) * rays).clamp(rays / 4.0, 4.0 * rays) as u64
 }
 
 /// Most rays of a complete solution.

@@ -1,6 +1,7 @@
 //! How much work, and which random numbers.
 
 use super::method::{Method, STOCHASTIC_JACOBI};
+use crate::Accuracy;
 use crate::transport::Leaving;
 
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -38,7 +39,7 @@ impl LightPart {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Budget {
     /// The number of rays that [`crate::solvers::budget::rays`] recommends.
     Heuristic,
@@ -46,6 +47,29 @@ pub enum Budget {
     Rays(u64),
     /// Until the driver stops: rounds of replicates, each round with twice the rays of the one before.
     Endless,
+    /// Rounds of replicates until the solution is accurate enough, or so many rays are spent.
+    Accuracy { accuracy: Accuracy, most_rays: Option<u64> },
+}
+
+impl Budget {
+    /// For the provenance, as `name = value`.
+    pub fn parameters(&self) -> Vec<(String, String)> {
+        let named = |name: &str, value: String| (name.to_owned(), value);
+        match self {
+            Budget::Heuristic => vec![named("rays", "heuristic".to_owned())],
+            Budget::Rays(rays) => vec![named("rays", rays.to_string())],
+            Budget::Endless => vec![named("rounds", "doubling".to_owned())],
+            Budget::Accuracy { accuracy: Accuracy { error, confidence, of }, most_rays } => {
+                let mut parameters = vec![
+                    named("error", error.to_string()),
+                    named("confidence", confidence.to_string()),
+                    named("error of", of.name()),
+                ];
+                parameters.extend(most_rays.map(|rays| named("most rays", rays.to_string())));
+                parameters
+            }
+        }
+    }
 }
 
 /// Those of stochastic Jacobi: a program chooses the method, and the replicates that suit it ([`Method::natural_replicates`]).

@@ -28,7 +28,14 @@ fn square(divisions: &[u16], light: [f32; 2]) -> Vec<u8> {
         version: String::new(),
     };
     let std_error = irradiance.clone();
-    let solution = Solution { irradiance, std_error, work: Work::default(), balance: Balance::default(), provenance };
+    let solution = Solution {
+        irradiance,
+        std_error,
+        certainty: None,
+        work: Work::default(),
+        balance: Balance::default(),
+        provenance,
+    };
     let options = ExportOptions { exposure: Some(-4.0), ..ExportOptions::default() };
     write(&LitScene::new(&problem, &solution), &options).unwrap()
 }

@@ -261,6 +261,7 @@ impl Solver for Hierarchical {
         Solution {
             irradiance: self.irradiance.iter().map(|&e| to_rgb(e)).collect(),
             std_error: vec![Rgb::grey(f32::NAN); self.irradiance.len()],
+            certainty: None,
             work: Work::default(),
             balance: self.balance(),
             provenance: provenance(problem, NAME, parameters, factors.seed),
@@ -270,6 +271,6 @@ impl Solver for Hierarchical {
     fn progress(&self) -> Progress {
         let stage = if self.stage == Stage::Refining { "refining links" } else { "gathering over links" };
         let unshot = self.unshot / self.emitted.max(f64::MIN_POSITIVE);
-        Progress { stage, rays: 0, rays_in_all: None, unshot, rms_error: None }
+        Progress { stage, rays: 0, rays_in_all: None, unshot, rms_error: None, excess: None }
     }
 }

@@ -1,0 +1,120 @@
+//! `--error`: how accurate a solution shall be, as people say it.
+
+use crate::failure::Failure;
+use crate::numbers::{parse_share, percent};
+use isolux_core::scene::Scene;
+use isolux_core::{Accuracy, Error, Quantity};
+
+/// What a bound holds with unless said otherwise, and everywhere where nobody asks.
+pub const CONFIDENCE: f64 = 0.95;
+
+#[derive(Clone, Debug, clap::Args)]
+pub struct AccuracyArguments {
+    /// Solve until the error is at most this, like 2% of the mean irradiance; --rays and --time limit it
+    #[arg(long, value_name = "SHARE", value_parser = parse_share)]
+    error: Option<f64>,
+
+    /// How sure that shall be: the share of all solves that keep it
+    #[arg(long, value_name = "SHARE", default_value = "95%", value_parser = parse_share, requires = "error")]
+    confidence: f64,
+
+    /// Which error: rms over all elements by area; max, of the worst element; mean, of the scene's mean irradiance; or object:NAME, of
+    /// that object's
+    #[arg(long, value_name = "WHAT", default_value = "rms", value_parser = parse_of, requires = "error")]
+    error_of: Of,
+}
+
+/// What is named before the scene is read.
+#[derive(Clone, Debug, PartialEq)]
+enum Of {
+    Whole(Quantity),
+    Object(String),
+}
+
+fn parse_of(text: &str) -> Result<Of, String> {
+    match (text, text.strip_prefix("object:")) {
+        ("rms", _) => Ok(Of::Whole(Quantity::Rms)),
+        ("max", _) => Ok(Of::Whole(Quantity::Max)),
+        ("mean", _) => Ok(Of::Whole(Quantity::Mean)),
+        (_, Some(name)) if !name.is_empty() => Ok(Of::Object(name.to_owned())),
+        _ => Err("it is rms, max, mean, or object:NAME with the name of an object of the scene".to_owned()),
+    }
+}
+
+impl AccuracyArguments {
+    pub fn is_asked(&self) -> bool {
+        self.error.is_some()
+    }
+
+    /// What is asked for in `scene`, if anything is.
+    ///
+    /// # Errors
+    /// If it has no such object, or several.
+    pub fn accuracy(&self, scene: &Scene) -> Result<Option<Accuracy>, Failure> {
+        let Some(error) = self.error else { return Ok(None) };
+        let of = match &self.error_of {
+            Of::Whole(quantity) => *quantity,
+            Of::Object(name) => Quantity::Object(object_called(scene, name)?),
+        };
+        Ok(Some(Accuracy { error, confidence: self.confidence, of }))
+    }
+}
+
+fn object_called(scene: &Scene, name: &str) -> Result<u32, Failure> {
+    let mut found = (0..).zip(&scene.objects).filter(|(_, object)| object.name == name).map(|(k, _)| k);
+    match (found.next(), found.count()) {
+        (Some(object), 0) => Ok(object),
+        (Some(_), others) => {
+            let what = format!("--error-of object:{name}: {} objects have this name", others + 1);
+            Err(Failure::usage(what).with_help("give each a name of its own, or ask for --error-of rms"))
+        }
+        (None, _) => {
+            let names = scene.objects.iter().map(|object| object.name.as_str());
+            let error = Error::unknown_name("object", name, names);
+            Err(Failure::usage(format!("--error-of: {error}")).with_help("'isolux scene' lists the objects"))
+        }
+    }
+}
+
+/// `RMS over all elements`, `mean irradiance of 'Floor'`.
+pub fn in_words(of: Quantity, scene: &Scene) -> String {
+    match of {
+        Quantity::Rms => "RMS over all elements".to_owned(),
+        Quantity::Max => "the worst element".to_owned(),
+        Quantity::Mean => "mean irradiance of the scene".to_owned(),
+        Quantity::Object(k) => {
+            let name = scene.objects.get(k as usize).map_or("", |object| &object.name);
+            format!("mean irradiance of '{}'", crate::terminal::harmless(name))
+        }
+    }
+}
+
+/// `with 95 % confidence`
+pub fn with_confidence(confidence: f64) -> String {
+    format!("with {} confidence", percent(confidence).replace(".0 %", " %"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isolux_core::scene::builtin::builtin;
+
+    #[test]
+    fn what_is_meant_is_told_by_name() {
+        assert_eq!(parse_of("max"), Ok(Of::Whole(Quantity::Max)));
+        assert_eq!(parse_of("object:a b"), Ok(Of::Object("a b".to_owned())));
+        assert!(parse_of("object:").is_err() && parse_of("worst").is_err());
+        assert_eq!(with_confidence(0.95), "with 95 % confidence");
+        assert_eq!(with_confidence(0.999), "with 99.9 % confidence");
+    }
+
+    #[test]
+    fn objects_that_are_not_there_or_there_twice_are_refused() {
+        let mut scene = builtin("cornell-box").unwrap();
+        assert_eq!(object_called(&scene, "floor").ok(), Some(0));
+        let message = |scene: &Scene, name| object_called(scene, name).unwrap_err().what;
+        assert!(message(&scene, "flor").contains("did you mean 'floor'"));
+        scene.objects[1].name = "floor".to_owned();
+        assert!(message(&scene, "floor").contains("2 objects"));
+    }
+}
