@@ -34,6 +34,13 @@ impl Replicates {
         Replicates { mean: zeros(), sum_sq_dev: zeros(), ..Replicates::default() }
     }
 
+    /// Whether they are of so many elements.
+    pub fn fits(&self, elements: usize) -> bool {
+        [self.mean.len(), self.sum_sq_dev.len()] == [elements; 2]
+            && [0, elements].contains(&self.earlier_mean.len())
+            && self.earlier_mean.len() == self.earlier_variance.len()
+    }
+
     /// Adds one replicate that took `rays` rays, its estimates in the order of the elements, whose areas are `area(e)` [m²].
     pub fn push(&mut self, rays: u64, values: impl Iterator<Item = Rgb>, area: impl Fn(u32) -> f32) {
         self.count += 1;

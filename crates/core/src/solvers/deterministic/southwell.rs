@@ -101,9 +101,10 @@ impl Southwell {
     }
 }
 
+#[typetag::serde]
 impl Solver for Southwell {
     fn step(&self) -> Option<Range<u64>> {
-        self.shooter.map(|_| 0..self.pieces())
+        self.shooter.map(|_| self.absorbed_pieces..self.pieces())
     }
 
     /// Landings are fluxes [lm].
@@ -164,6 +165,12 @@ impl Solver for Southwell {
             balance: Balance { absorbed: self.surfaces.absorbed(&self.irradiance), ..self.flux },
             provenance: provenance(problem, NAME, parameters, factors.seed),
         }
+    }
+
+    fn fits(&self, problem: &Problem) -> bool {
+        let elements = problem.mesh.len();
+        let shooter = self.shooter.is_none_or(|shooter| (shooter as usize) < elements);
+        shooter && [self.irradiance.len(), self.unshot.len()] == [elements; 2] && self.surfaces.fits(elements)
     }
 
     fn progress(&self) -> Progress {

@@ -10,6 +10,7 @@ mod auto;
 pub mod axes;
 mod complete;
 mod experience;
+mod extend;
 mod light;
 mod meaning;
 pub mod method;
@@ -58,6 +59,10 @@ pub struct MonteCarlo {
     balance: Balance,
     rays: u64,
     rms_error: Option<f64>,
+    /// What was asked for before the budget of the settings, if that extends the run.
+    extended: Vec<Budget>,
+    /// Rays that one more round shall bring the run to.
+    until: Option<u64>,
 }
 
 impl MonteCarlo {
@@ -83,10 +88,7 @@ impl MonteCarlo {
         // A first round of a few rays for each element: a first answer soon, with its error bar.
         let rays_in_round =
             rays_in_all.unwrap_or((4 * problem.mesh.len() as u64).max(1000 * u64::from(settings.replicates)));
-        let most_each = most_rays_each(problem, &settings);
-        let replicates_in_round =
-            rays_in_round.div_ceil(most_each).clamp(settings.replicates.into(), u32::MAX.into()) as u32;
-        let rays_each = rays_in_round.div_ceil(replicates_in_round.into());
+        let (replicates_in_round, rays_each) = shape_of_round(problem, &settings, rays_in_round);
         let experience = Experience::expected(problem);
         let mut complete = (settings.method.order.entry().make)(problem, &settings);
         complete.restart(problem, derive(settings.seed, 0), rays_each, &experience);
@@ -102,13 +104,19 @@ impl MonteCarlo {
             balance: Balance::default(),
             rays: 0,
             rms_error: None,
+            extended: Vec::new(),
+            until: None,
         })
     }
 
-    /// Whether the round that was asked for is complete, or there is no light at all.
+    /// Whether the rounds that were asked for are complete, or there is no light at all.
     fn is_finished(&self) -> bool {
-        let complete = self.settings.budget != Budget::Endless && self.replicate == self.replicates_in_round;
+        let complete = self.settings.budget != Budget::Endless && self.round_is_complete() && !self.lacks_rays();
         complete || self.is_dark()
+    }
+
+    fn round_is_complete(&self) -> bool {
+        self.replicates.count_in_round() == self.replicates_in_round
     }
 
     fn is_dark(&self) -> bool {
@@ -132,22 +140,22 @@ impl MonteCarlo {
         if self.is_finished() {
             return self.complete.retire();
         }
-        if self.settings.budget == Budget::Endless && self.replicates.count_in_round() == self.replicates_in_round {
-            self.replicates.close_round();
-            self.rays_each = (2 * self.rays_each).min(most_rays_each(problem, &self.settings));
+        if self.round_is_complete() {
+            self.next_round(problem);
         }
+        self.start_replicate(problem);
+    }
+
+    fn start_replicate(&mut self, problem: &Problem) {
         let seed = derive(self.settings.seed, u64::from(self.replicate));
         self.complete.restart(problem, seed, self.rays_each, &self.experience);
     }
 
     fn provenance(&self, problem: &Problem) -> Provenance {
-        let (name, value) = match self.settings.budget {
-            Budget::Heuristic => ("rays", "heuristic".to_owned()),
-            Budget::Rays(rays) => ("rays", rays.to_string()),
-            Budget::Endless => ("rounds", "doubling".to_owned()),
-        };
+        let (name, value) = self.settings.budget.in_words();
         let mut parameters =
             vec![(name.to_owned(), value), ("replicates".to_owned(), self.replicates_in_round.to_string())];
+        parameters.extend(self.extended_from());
         if self.settings.method.has_leaving() {
             parameters.push(("leaving".to_owned(), self.settings.leaving.name().to_owned()));
         }
@@ -164,6 +172,7 @@ impl MonteCarlo {
     }
 }
 
+#[typetag::serde]
 impl Solver for MonteCarlo {
     fn step(&self) -> Option<Range<u64>> {
         if self.is_finished() { None } else { self.complete.pieces() }
@@ -199,6 +208,16 @@ impl Solver for MonteCarlo {
         }
     }
 
+    fn go_on(&mut self, problem: &Problem, budget: Budget) -> Result<(), Error> {
+        self.extend(problem, budget)
+    }
+
+    fn fits(&self, problem: &Problem) -> bool {
+        // The memory of the last complete solution was given back.
+        let is_retired = self.replicate > 0 && self.is_finished();
+        self.replicates.fits(problem.mesh.len()) && (is_retired || self.complete.fits(problem))
+    }
+
     fn progress(&self) -> Progress {
         Progress {
             stage: self.complete.stage(),
@@ -211,6 +230,13 @@ impl Solver for MonteCarlo {
             rms_error: self.rms_error,
         }
     }
+}
+
+/// Complete solutions of a round of so many rays, and the rays of each.
+fn shape_of_round(problem: &Problem, settings: &Settings, rays: u64) -> (u32, u64) {
+    let most_each = most_rays_each(problem, settings);
+    let replicates = rays.div_ceil(most_each).clamp(settings.replicates.into(), u32::MAX.into()) as u32;
+    (replicates, rays.div_ceil(replicates.into()))
 }
 
 /// Most rays of a complete solution.

@@ -48,6 +48,22 @@ pub enum Budget {
     Endless,
 }
 
+impl Budget {
+    /// The number of rays, if it is one.
+    pub fn rays(self) -> Option<u64> {
+        if let Budget::Rays(rays) = self { Some(rays) } else { None }
+    }
+
+    /// Name and value of the parameter that asks for it.
+    pub fn in_words(self) -> (&'static str, String) {
+        match self {
+            Budget::Heuristic => ("rays", "heuristic".to_owned()),
+            Budget::Rays(rays) => ("rays", rays.to_string()),
+            Budget::Endless => ("rounds", "doubling".to_owned()),
+        }
+    }
+}
+
 /// Those of stochastic Jacobi: a program chooses the method, and the replicates that suit it ([`Method::natural_replicates`]).
 impl Default for Settings {
     fn default() -> Settings {

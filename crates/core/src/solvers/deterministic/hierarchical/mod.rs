@@ -219,9 +219,10 @@ fn pairs(problem: &Problem, clusters: &Clusters) -> Vec<Link> {
     facing.map(|(p, q)| Link { ends: [p, q], exchange: f64::NAN }).collect()
 }
 
+#[typetag::serde]
 impl Solver for Hierarchical {
     fn step(&self) -> Option<Range<u64>> {
-        (self.stage != Stage::Done).then(|| 0..self.pieces() as u64)
+        (self.stage != Stage::Done).then(|| self.absorbed_pieces as u64..self.pieces() as u64)
     }
 
     fn part(&self, problem: &Problem, piece: u64) -> Part {
@@ -265,6 +266,15 @@ impl Solver for Hierarchical {
             balance: self.balance(),
             provenance: provenance(problem, NAME, parameters, factors.seed),
         }
+    }
+
+    fn fits(&self, problem: &Problem) -> bool {
+        let (elements, clusters) = (problem.mesh.len(), self.clusters.all.len());
+        let ends = self.links.iter().chain(&self.refined).flat_map(|link| link.ends);
+        [self.radiosity.len(), self.arrived.len()] == [clusters; 2]
+            && self.irradiance.len() == elements
+            && self.surfaces.fits(elements)
+            && { ends }.all(|end| (end as usize) < clusters)
     }
 
     fn progress(&self) -> Progress {
