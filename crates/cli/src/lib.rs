@@ -5,19 +5,23 @@
 
 mod arguments;
 mod check;
+mod checkpoints;
 mod compare;
 mod drafts;
+mod drive;
 mod factors;
 mod failure;
 mod input;
 mod interrupt;
 mod list;
+mod merge;
 mod method;
 mod numbers;
 mod output;
 mod progress;
 mod render;
 mod report;
+mod resume;
 mod scene;
 mod solve;
 mod study;
@@ -59,6 +63,7 @@ enum Command {
     Render(render::Render),
     Check(check::Check),
     Compare(compare::Compare),
+    Merge(merge::Merge),
     Scene(scene::SceneCommand),
     Factors(factors::Factors),
     Study(study::StudyCommand),
@@ -85,6 +90,7 @@ fn execute(command: Option<Command>) -> Result<u8, Failure> {
         Some(Command::Render(render)) => render.run(),
         Some(Command::Check(check)) => check.run(),
         Some(Command::Compare(compare)) => compare.run(),
+        Some(Command::Merge(merge)) => merge.run(),
         Some(Command::Scene(scene)) => scene.run(),
         Some(Command::Factors(factors)) => factors.run(),
         Some(Command::Study(study)) => study.run(),

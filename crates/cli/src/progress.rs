@@ -116,6 +116,11 @@ impl Watch<'_> {
         Watch { display, start, next: Duration::ZERO, limit }
     }
 
+    /// Says something between the pictures of the bar.
+    pub fn say(&self, what: &str) {
+        self.display.say(what);
+    }
+
     /// Shows `progress`, if it is time to.
     pub fn show(&mut self, progress: &Progress) {
         let elapsed = self.start.elapsed();

@@ -9,6 +9,7 @@
 
 use crate::Error;
 use crate::container::{Container, element_count, invalid};
+use crate::files::LARGEST_INPUT;
 use isolux_core::Problem;
 use isolux_core::mesh::Cut;
 use isolux_core::scene::Scene;
@@ -50,9 +51,13 @@ struct Loaded {
 /// The bytes of the file.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the state cannot be encoded.
+/// [`Error::Invalid`] if the state cannot be encoded, or is so large that it would not be read again.
 pub fn write(problem: &Problem, solver: &dyn Solver, clock: Clock) -> Result<Vec<u8>, Error> {
-    FILE.write(&Written { scene: &problem.scene, cut: problem.mesh.cut(), clock, solver })
+    let file = FILE.write(&Written { scene: &problem.scene, cut: problem.mesh.cut(), clock, solver })?;
+    if file.len() as u64 > LARGEST_INPUT {
+        return Err(invalid(FILE.what, "solver", "the state is larger than the 4 GiB that are read again"));
+    }
+    Ok(file)
 }
 
 /// The run in the bytes of a file; `name` is for messages.
@@ -68,11 +73,6 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Checkpoint, Error> {
     } else {
         Err(invalid(name, "solver", "its state is not one of this scene"))
     }
-}
-
-/// Whether these are the bytes of a checkpoint.
-pub fn is_checkpoint(bytes: &[u8]) -> bool {
-    bytes.starts_with(FILE.magic)
 }
 
 #[cfg(test)]
