@@ -37,6 +37,7 @@ Examples:
   isolux solve cornell-box -o cornell.png         light a built-in room and take a picture
   isolux solve room.glb -o lit.glb -o lit.isolux  a lit model for any viewer, and the solution
   isolux render lit.isolux -o view.png            another picture, without solving again
+  isolux merge a.isolux b.isolux -o both.isolux   one better solution of two seeds
   isolux check room.glb                           what is in a file, and what is wrong with it
   isolux list                                     built-in scenes, formats, methods
 

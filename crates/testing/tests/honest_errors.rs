@@ -104,7 +104,7 @@ fn solve_extended(problem: &Problem, settings: Settings, rays: u64) -> Solution 
 #[test]
 fn squared_errors_are_honest_when_runs_are_merged() {
     let problem = problem("labyrinth:rho=0.5", 796);
-    let merged = |seed| {
+    let merged = |seed: u64| {
         let part = |k: u64| solve(&problem, Settings { seed: 2 * seed + k, ..with_rays(20_000 * (k + 1)) });
         merge(&problem, &[part(0), part(1)]).unwrap()
     };
