@@ -16,6 +16,13 @@ pub struct SceneArguments {
     /// A file of that name wins over a built-in scene. Built-in scenes take parameters: labyrinth:rho=0.9
     pub scene: std::path::PathBuf,
 
+    #[command(flatten)]
+    pub units: UnitArguments,
+}
+
+/// How the numbers of a scene file are taken.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct UnitArguments {
     /// What the intensities of a glTF file's lamps mean
     #[arg(long, value_name = "UNITS", default_value = "spec")]
     light_units: Units,
@@ -32,7 +39,7 @@ enum Units {
     Raw,
 }
 
-impl SceneArguments {
+impl UnitArguments {
     pub fn options(&self) -> ImportOptions {
         let light_units = match self.light_units {
             Units::Spec => LightUnits::Spec,

@@ -40,9 +40,9 @@ const MOST_EMITTERS: usize = 10;
 impl Check {
     pub fn run(self) -> Result<u8, Failure> {
         watch(&OpenFiles::default(), move |_| {
-            let scene = input::scene(&self.scene.scene, &self.scene.options())?;
+            let scene = input::scene(&self.scene.scene, &self.scene.units.options())?;
             let report = check(&scene);
-            let units = self.scene.assumed_units();
+            let units = self.scene.units.assumed_units();
             let text = if self.json { as_json(&scene, &report, &units) } else { in_words(&scene, &report, &units) };
             terminal::print(&text)?;
             let wrong = report.findings.iter().any(|finding| finding.severity == Severity::Error);

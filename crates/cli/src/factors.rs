@@ -147,7 +147,7 @@ impl Factors {
 
     fn work(&self, formats: &[&FactorFormat], files: &OpenFiles, display: &mut Display) -> Result<(), Failure> {
         display.stage("reading the scene");
-        let scene = input::scene(&self.scene.scene, &self.scene.options())?;
+        let scene = input::scene(&self.scene.scene, &self.scene.units.options())?;
         let problem = Problem::new(scene, self.element_size())?;
         let way = form_factors::way(self.by, &problem, &self.settings()).map_err(|error| {
             Failure::from(error).with_help("choose with --by, --elements and the option of the way; see --help")

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use isolux_core::scene::Scene;
 use isolux_core::scene::builtin::{builtin, is_builtin};
 use isolux_core::{Error, Problem, Solution};
+use isolux_io::checkpoint_file::{self, Checkpoint};
 use isolux_io::import::{self, ImportOptions};
 use isolux_io::{files, solution_file};
 use std::path::Path;
@@ -18,6 +19,10 @@ pub fn scene(name: &Path, options: &ImportOptions) -> Result<Scene, Failure> {
         if is_solution(name) {
             return Err(Failure::usage(format!("{text}: this is a solution, not a scene"))
                 .with_help("'isolux render' takes pictures of it and writes it in other formats"));
+        }
+        if is_checkpoint(name) {
+            return Err(Failure::usage(format!("{text}: this is a checkpoint, not a scene"))
+                .with_help(format!("'isolux solve --resume {text}' goes on with it")));
         }
         return Ok(import::read_scene(name, options)?);
     }
@@ -56,6 +61,33 @@ pub fn solution(path: &Path) -> Result<(Problem, Solution), Failure> {
     })
 }
 
+/// Reads a checkpoint.
+///
+/// # Errors
+/// Those of the reader, with advice if `path` is something else.
+pub fn checkpoint(path: &Path) -> Result<Checkpoint, Failure> {
+    let text = path.to_string_lossy();
+    if !path.exists() {
+        return Err(Failure::usage(format!("there is no file '{text}'"))
+            .with_help("'isolux solve SCENE --checkpoint FILE' makes such a file"));
+    }
+    checkpoint_file::read(&text, &files::read(path)?).map_err(|error| {
+        let failure = Failure::from(error);
+        if is_solution(path) {
+            return failure.with_help("a solution cannot be gone on with; 'isolux merge' joins it with others");
+        }
+        failure
+    })
+}
+
 fn is_solution(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("isolux"))
+    has_extension(path, "isolux")
+}
+
+fn is_checkpoint(path: &Path) -> bool {
+    has_extension(path, "checkpoint")
+}
+
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }

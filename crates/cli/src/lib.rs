@@ -6,19 +6,23 @@
 mod accuracy;
 mod arguments;
 mod check;
+mod checkpoints;
 mod compare;
 mod drafts;
+mod drive;
 mod factors;
 mod failure;
 mod input;
 mod interrupt;
 mod list;
+mod merge;
 mod method;
 mod numbers;
 mod output;
 mod progress;
 mod render;
 mod report;
+mod resume;
 mod scene;
 mod solve;
 mod study;
@@ -34,6 +38,7 @@ Examples:
   isolux solve cornell-box -o cornell.png         light a built-in room and take a picture
   isolux solve room.glb -o lit.glb -o lit.isolux  a lit model for any viewer, and the solution
   isolux render lit.isolux -o view.png            another picture, without solving again
+  isolux merge a.isolux b.isolux -o both.isolux   one better solution of two seeds
   isolux check room.glb                           what is in a file, and what is wrong with it
   isolux list                                     built-in scenes, formats, methods
 
@@ -56,10 +61,11 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    Solve(solve::Solve),
+    Solve(Box<solve::Solve>),
     Render(render::Render),
     Check(check::Check),
     Compare(compare::Compare),
+    Merge(merge::Merge),
     Scene(scene::SceneCommand),
     Factors(factors::Factors),
     Study(study::StudyCommand),
@@ -86,6 +92,7 @@ fn execute(command: Option<Command>) -> Result<u8, Failure> {
         Some(Command::Render(render)) => render.run(),
         Some(Command::Check(check)) => check.run(),
         Some(Command::Compare(compare)) => compare.run(),
+        Some(Command::Merge(merge)) => merge.run(),
         Some(Command::Scene(scene)) => scene.run(),
         Some(Command::Factors(factors)) => factors.run(),
         Some(Command::Study(study)) => study.run(),

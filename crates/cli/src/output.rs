@@ -97,11 +97,30 @@ impl Outputs {
     /// # Errors
     /// A failure for an extension without a format, and those of [`OpenFiles::create`].
     pub fn open(paths: &[PathBuf], inputs: &[&Path]) -> Result<Outputs, Failure> {
-        let mut list = Vec::new();
-        for path in paths {
-            list.push((path.clone(), export::for_path(path)?));
-        }
-        Ok(Outputs { files: OpenFiles::create(paths, inputs)?, list })
+        Outputs::open_with_checkpoint(paths, None, inputs)
+    }
+
+    /// Opens the files, and one for checkpoints after them.
+    ///
+    /// # Errors
+    /// As [`Outputs::open`].
+    pub fn open_with_checkpoint(
+        paths: &[PathBuf],
+        checkpoint: Option<&Path>,
+        inputs: &[&Path],
+    ) -> Result<Outputs, Failure> {
+        let list: Result<Vec<_>, Failure> =
+            paths.iter().map(|path| Ok((path.clone(), export::for_path(path)?))).collect();
+        let all: Vec<PathBuf> = paths.iter().cloned().chain(checkpoint.map(Path::to_owned)).collect();
+        Ok(Outputs { list: list?, files: OpenFiles::create(&all, inputs)? })
+    }
+
+    /// Puts `bytes` into the place of the file for checkpoints, as [`OpenFiles::rewrite`] does.
+    ///
+    /// # Errors
+    /// A failure if it cannot be written.
+    pub fn write_checkpoint(&self, bytes: &[u8]) -> Result<(), Failure> {
+        self.files.rewrite(self.list.len(), bytes)
     }
 
     /// Writes a draft of all files, which will be written again. The vertices of an `earlier` draft are used once more.

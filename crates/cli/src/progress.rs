@@ -116,6 +116,11 @@ impl Watch<'_> {
         Watch { display, start, next: Duration::ZERO, limit }
     }
 
+    /// Says something between the pictures of the bar.
+    pub fn say(&self, what: &str) {
+        self.display.say(what);
+    }
+
     /// Shows `progress`, if it is time to.
     pub fn show(&mut self, progress: &Progress) {
         let elapsed = self.start.elapsed();
@@ -184,6 +189,7 @@ mod tests {
             rays_in_all: Some(10_000_000),
             unshot: 0.25,
             rms_error: Some(0.0123),
+            asked: None,
             excess: None,
         };
         let text = in_short(&progress, 0.5, Duration::from_secs(4));

@@ -1,25 +1,26 @@
 //! `isolux solve`: from a scene to a solution, in files.
 
 use crate::accuracy::AccuracyArguments;
-use crate::arguments::{PictureArguments, SceneArguments, ThreadArguments};
+use crate::arguments::{PictureArguments, ThreadArguments, UnitArguments};
 use crate::drafts::Drafts;
+use crate::drive::Drive;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
 use crate::method::MethodArguments;
 use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
-use crate::progress::{Display, ProgressArguments, Watch};
-use crate::summary::{Ended, Summary};
+use crate::progress::{Display, ProgressArguments};
+use crate::resume::{ResumeArguments, resume, time_left};
+use crate::summary::Summary;
 use crate::{input, terminal};
 use isolux_core::mesh::Resolution;
-use isolux_core::run;
 use isolux_core::solvers::Solver;
 use isolux_core::solvers::deterministic;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
 use isolux_core::transport::Leaving;
-use isolux_core::{Accuracy, Problem, Solution};
-use std::ops::ControlFlow;
-use std::path::PathBuf;
+use isolux_core::{Accuracy, Problem};
+use isolux_io::checkpoint_file::{Checkpoint, Clock};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Elements that deterministic methods aim at unless said otherwise: their cost grows with the square.
@@ -33,6 +34,9 @@ Examples:
   isolux solve room.glb --error 1% --error-of object:Floor --time 10min -o lit.csv
   isolux solve room.glb --elements 1e6 --time 10min -o lit.isolux
   isolux solve room.glb --time 1min --every 5s -o lit.png
+  isolux solve room.glb --rays 1G --checkpoint room.checkpoint -o lit.isolux
+  isolux solve --resume room.checkpoint -o lit.isolux
+  isolux solve --resume room.checkpoint --rays 4G -o better.isolux
   isolux solve labyrinth:rho=0.9 --rays 50M --seed 7 --json > summary.json
   isolux solve room.glb --light indirect -o bounced.csv
   isolux solve cubes --method random-walk --estimator absorption --sequence halton
@@ -48,7 +52,10 @@ is enough for a first look. Half the error takes four times as many rays.
 The same scene, options and seed give the same files, bit for bit, for any number of threads (but not with --time).
 
 Ctrl-C ends the solve and keeps the best result so far: the files are written, and the exit code is 130. A second \
-Ctrl-C stops at once and leaves old files as they were. SIGTERM does the same.";
+Ctrl-C stops at once and leaves old files as they were. SIGTERM does the same.
+
+With --checkpoint FILE nothing is lost that was computed more than a few seconds before, whatever happens: \
+'isolux solve --resume FILE' goes on, and ends with the same bits as if nothing had happened (but not with --time).";
 
 /// Compute the light on every surface of a scene
 ///
@@ -56,8 +63,14 @@ Ctrl-C stops at once and leaves old files as they were. SIGTERM does the same.";
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Solve {
+    /// A scene file (.glb .gltf .obj .ply .stl), or the name of a built-in scene
+    ///
+    /// A file of that name wins over a built-in scene. Built-in scenes take parameters: labyrinth:rho=0.9
+    #[arg(required_unless_present = "resume")]
+    scene: Option<PathBuf>,
+
     #[command(flatten)]
-    scene: SceneArguments,
+    units: UnitArguments,
 
     /// A file to write, in the format of its extension; repeat it for several
     #[arg(short, long = "output", value_name = "OUT")]
@@ -108,6 +121,9 @@ pub struct Solve {
     /// themselves. The balance is that of all light either way [default: all]
     #[arg(long, value_name = "PART", value_parser = parse_light)]
     light: Option<LightPart>,
+
+    #[command(flatten, next_help_heading = "Stop and resume")]
+    resume: ResumeArguments,
 
     #[command(flatten)]
     method: MethodArguments,
@@ -166,7 +182,8 @@ impl Chosen {
 
 impl Solve {
     pub fn run(self) -> Result<u8, Failure> {
-        let outputs = Outputs::open(&self.outputs, &[&self.scene.scene])?;
+        let inputs: Vec<&Path> = self.scene.as_deref().into_iter().chain(self.resume.input()).collect();
+        let outputs = Outputs::open_with_checkpoint(&self.outputs, self.resume.file()?, &inputs)?;
         let pool = self.threads.pool()?;
         let files = outputs.files.clone();
         watch(&files, move |interrupt| pool.install(|| self.work(&outputs, interrupt)))
@@ -181,19 +198,23 @@ impl Solve {
     }
 
     fn work_watched(&self, outputs: &Outputs, interrupt: &Interrupt, display: &mut Display) -> Result<u8, Failure> {
-        let chosen = self.chosen()?;
-        display.stage("reading the scene");
-        let scene = input::scene(&self.scene.scene, &self.scene.options())?;
-        self.picture.check_camera(&scene)?;
-        let accuracy = self.accuracy.accuracy(&scene)?;
-        display.stage("cutting the surfaces into elements");
-        let problem = Problem::new(scene, self.resolution())?;
-        let mut solver = chosen.solver(&problem, self.budget(accuracy))?;
+        let Checkpoint { problem, mut solver, clock } = match &self.resume.resume {
+            Some(file) => self.resumed(file, display)?,
+            None => self.begun(display)?,
+        };
 
         interrupt.keep_result();
         let start = Instant::now();
-        let (solution, ended) = self.solve(solver.as_mut(), &problem, outputs, display, start, interrupt);
-        let seconds = start.elapsed().as_secs_f64();
+        let drive = Drive {
+            start,
+            left: time_left(clock),
+            drafts: self.every.map(|every| Drafts::new(outputs, self.picture.options(), every, start)),
+            checkpoints: self.resume.checkpoints(outputs, start, clock)?,
+            interrupt,
+        };
+        let (solution, ended) = drive.run(solver.as_mut(), &problem, display);
+        let seconds = (clock.solved + start.elapsed()).as_secs_f64();
+        let accuracy = solver.progress().asked;
         drop(solver);
 
         let written = outputs.write(&problem, &solution, &self.picture.options(), display, interrupt)?;
@@ -203,6 +224,27 @@ impl Solve {
             Summary { problem: &problem, solution: &solution, accuracy, ended, seconds, threads, outputs: &written };
         self.report(&summary)?;
         Ok(if interrupt.is_asked() { INTERRUPTED } else { 0 })
+    }
+
+    /// The run in a checkpoint, with more to do if more is asked for.
+    fn resumed(&self, file: &Path, display: &mut Display) -> Result<Checkpoint, Failure> {
+        display.stage("reading the checkpoint");
+        let run = resume(file, &self.accuracy, self.rays, self.time)?;
+        self.picture.check_camera(&run.problem.scene)?;
+        Ok(run)
+    }
+
+    /// A run that has not begun.
+    fn begun(&self, display: &mut Display) -> Result<Checkpoint, Failure> {
+        let chosen = self.chosen()?;
+        display.stage("reading the scene");
+        let scene = input::scene(self.scene.as_deref().unwrap_or(Path::new("")), &self.units.options())?;
+        self.picture.check_camera(&scene)?;
+        let accuracy = self.accuracy.accuracy(&scene)?;
+        display.stage("cutting the surfaces into elements");
+        let problem = Problem::new(scene, self.resolution())?;
+        let solver = chosen.solver(&problem, self.budget(accuracy))?;
+        Ok(Checkpoint { problem, solver, clock: Clock { limit: self.time, ..Clock::default() } })
     }
 
     fn resolution(&self) -> Resolution {
@@ -264,46 +306,6 @@ impl Solve {
             leaving: self.leaving.unwrap_or(default.leaving),
             light,
         })
-    }
-
-    fn solve(
-        &self,
-        solver: &mut dyn Solver,
-        problem: &Problem,
-        outputs: &Outputs,
-        display: &mut Display,
-        start: Instant,
-        interrupt: &Interrupt,
-    ) -> (Solution, Ended) {
-        let mut drafts = self.every.map(|every| Drafts::new(outputs, self.picture.options(), every, start));
-        let mut watch = Watch::new(display, start, self.time);
-        let mut ended = Ended::Complete;
-        let mut solution = run::watch(solver, problem, |solver| {
-            watch.show(&solver.progress());
-            if let Some(drafts) = drafts.as_mut().filter(|_| !interrupt.is_asked()) {
-                drafts.write(solver, problem);
-            }
-            if interrupt.is_asked() {
-                ended = Ended::Interrupted;
-            } else if self.time.is_some_and(|limit| start.elapsed() >= limit) {
-                ended = Ended::TimeLimit;
-            }
-            if ended == Ended::Complete { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        });
-        if let Some(failure) = drafts.and_then(|drafts| drafts.failure) {
-            display.say(&format!("drafts ended early: {failure}"));
-        }
-        let stopped = match ended {
-            Ended::Complete => return (solution, ended),
-            Ended::TimeLimit => "by the time limit",
-            Ended::Interrupted => {
-                display.say("interrupted: writing the best result so far. Ctrl-C again stops at once.");
-                "by the user"
-            }
-        };
-        // The files say, too, that these are not the rays the other parameters ask for.
-        solution.provenance.parameters.push(("stopped".to_owned(), stopped.to_owned()));
-        (solution, ended)
     }
 
     fn report(&self, summary: &Summary) -> Result<(), Failure> {

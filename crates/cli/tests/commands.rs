@@ -36,6 +36,32 @@ fn solutions_of_two_seeds_differ_as_their_error_bars_say() {
 }
 
 #[test]
+fn solutions_of_several_seeds_are_merged() {
+    let folder = Folder::new();
+    let solve = |seed: &str, elements: &str| {
+        let file = format!("{seed}-{elements}.isolux");
+        folder.prints(&["solve", "box", "--elements", elements, "--rays", "30k", "--seed", seed, "-o", &file]);
+        file
+    };
+    let [one, two, other] = [solve("1", "300"), solve("2", "300"), solve("3", "500")];
+    let text = folder.prints(&["merge", &one, &two, "-o", "m.isolux", "-o", "m.json", "-o", "m.png", "--width=40"]);
+    assert!(text.contains("2 solutions") && text.contains("Estimated error") && text.contains("m.png"), "{text}");
+    let summary: serde_json::Value = serde_json::from_slice(&folder.read("m.json")).unwrap();
+    assert_eq!(summary["parameters"]["merged seeds"], "1, 2");
+    let error = |name: &str| {
+        folder.prints(&["render", name, "-o", "s.json"]);
+        let summary: serde_json::Value = serde_json::from_slice(&folder.read("s.json")).unwrap();
+        summary["rms_error_estimate"].as_f64().unwrap()
+    };
+    assert!(error("m.isolux") < 0.8 * error(&one).min(error(&two)));
+    assert!(folder.fails(2, &["merge", &one, &one, "-o", "n.csv"]).contains("not independent"));
+    assert!(folder.fails(2, &["merge", "m.isolux", &two, "-o", "n.csv"]).contains("seed 2"));
+    assert!(folder.fails(2, &["merge", &one, &other, "-o", "n.csv"]).contains("different elements"));
+    assert!(folder.fails(2, &["merge", &one, &two, "-o", &one]).contains("replace the input"));
+    assert!(folder.fails(2, &["merge", &one, "-o", "n.csv"]).contains("values required"));
+}
+
+#[test]
 fn a_built_in_scene_is_written_checked_and_solved_as_a_file() {
     let folder = Folder::new();
     assert!(folder.prints(&["scene", "cornell-box", "-o", "c.glb"]).contains("c.glb"));
@@ -70,7 +96,7 @@ fn lists_help_and_version_teach() {
     assert!(folder.prints(&["list", "sequences"]).contains("scrambled-halton"));
     assert!(folder.prints(&[]).contains("Usage: isolux"));
     assert!(folder.prints(&["--version"]).starts_with("isolux "));
-    for command in ["solve", "render", "check", "compare", "scene", "factors", "list"] {
+    for command in ["solve", "render", "check", "compare", "merge", "scene", "factors", "list"] {
         assert!(folder.prints(&[command, "--help"]).contains("Examples:"), "{command}");
         assert!(folder.prints(&["--help"]).contains(command));
     }

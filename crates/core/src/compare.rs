@@ -78,7 +78,9 @@ pub struct Scores {
 /// # Errors
 /// [`Error::NotComparable`] if the two problems are not the same scene cut into the same elements.
 pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -> Result<Comparison, Error> {
-    same_problem(problem, other)?;
+    if let Some(what) = problem.difference(other) {
+        return Err(Error::NotComparable { what });
+    }
     let mesh = &problem.mesh;
     let (mut area, mut sum, mut sum_sq, mut variance) = (0.0, 0.0, 0.0, 0.0);
     let mut power = [0.0; 2];
@@ -132,16 +134,6 @@ impl Scores {
         let of_all = Scores { elements: scores.len(), mean, std_dev: variance.sqrt(), beyond_3: beyond / count };
         (!scores.is_empty()).then_some(of_all)
     }
-}
-
-fn same_problem(a: &Problem, b: &Problem) -> Result<(), Error> {
-    if a.scene.hash() != b.scene.hash() {
-        return Err(Error::NotComparable { what: "they are of different scenes (geometry, materials or lights)" });
-    }
-    if a.mesh.cut() != b.mesh.cut() {
-        return Err(Error::NotComparable { what: "the scene is cut into different elements" });
-    }
-    Ok(())
 }
 
 #[cfg(test)]

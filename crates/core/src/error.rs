@@ -27,6 +27,10 @@ pub enum Error {
     #[error("the two solutions cannot be compared: {what}")]
     NotComparable { what: &'static str },
 
+    /// Solutions that cannot be made one; the text says why.
+    #[error("the solutions cannot be merged: {what}")]
+    NotMergeable { what: String },
+
     /// A number that is not finite reached the solver.
     #[error("element {element} has {what} {value}, which is not a finite number")]
     NotFinite { element: u32, what: &'static str, value: f32 },

@@ -32,6 +32,18 @@ impl Problem {
         let geometry = geometry::for_scene(&scene);
         Ok(Problem { scene, mesh, geometry })
     }
+
+    /// Why solutions of this problem and of the `other` have nothing in common; `None` if they are of the same scene, cut into the same
+    /// elements.
+    pub fn difference(&self, other: &Problem) -> Option<&'static str> {
+        if self.scene.hash() != other.scene.hash() {
+            Some("they are of different scenes (geometry, materials or lights)")
+        } else if self.mesh.cut() != other.mesh.cut() {
+            Some("the scene is cut into different elements")
+        } else {
+            None
+        }
+    }
 }
 
 impl std::fmt::Debug for Problem {

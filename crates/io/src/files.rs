@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// No input file may be larger [bytes].
-const LARGEST_INPUT: u64 = 4 << 30;
+pub const LARGEST_INPUT: u64 = 4 << 30;
 
 /// The content of a file.
 ///

@@ -104,3 +104,11 @@ pub fn made_up(problem: &Problem) -> Solution {
         },
     }
 }
+
+/// A small xorshift generator: mutations must be the same each time.
+pub fn random(state: &mut u64) -> usize {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 16) as usize
+}

@@ -42,6 +42,8 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("promises of the error of means", 2),
     ("honest error bars with few lines", 1),
     ("honest error bars over rounds", 1),
+    ("honest error bars of extended runs", 2),
+    ("honest error bars of merged runs", 1),
     ("back face of a flipped wall", 1),
     ("point light in a black box", comparisons(6)),
     ("point light in a sphere", 2 * comparisons(8)),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// its own level or higher.
 const LAYERS: &[(usize, &[&str])] = &[
     (0, &["math", "error", "VERSION"]),
-    (1, &["choice", "certainty"]),
+    (1, &["choice", "certainty", "precision"]),
     (2, &["scene", "sampling"]),
     (3, &["mesh"]),
     (4, &["geometry"]),
@@ -16,7 +16,7 @@ const LAYERS: &[(usize, &[&str])] = &[
     (6, &["transport", "solution"]),
     (7, &["form_factors", "accuracy"]),
     (8, &["solvers"]),
-    (9, &["run", "view", "report", "compare"]),
+    (9, &["run", "view", "report", "compare", "merge"]),
 ];
 
 /// Names re-exported at the root, and where they live.

@@ -8,17 +8,12 @@ use isolux_core::run::run;
 use isolux_core::scene::Light;
 use isolux_core::scene::LightKind;
 use isolux_core::solvers::Solver;
-use isolux_core::solvers::deterministic::hierarchical::Hierarchical;
-use isolux_core::solvers::deterministic::jacobi::{self, Form};
-use isolux_core::solvers::deterministic::southwell::Southwell;
-use isolux_core::solvers::deterministic::{DETERMINISTIC, Settings, direct, gauss_seidel, lu, solver};
-use isolux_core::{Error, Problem, Solution};
+use isolux_core::solvers::deterministic::{DETERMINISTIC, Settings, lu, solver};
+use isolux_core::{Problem, Solution};
 use isolux_testing::contour::convex_room_answer;
 use isolux_testing::ensemble::Exact;
 use isolux_testing::mutants::{Fault, with_fault};
 use isolux_testing::scenes::{brighten, cut, flip, furnace, problem, scene};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::ops::ControlFlow;
 
 /// Solvers on a matrix of form factors.
@@ -226,14 +221,11 @@ fn the_same_bits_for_any_number_of_threads() {
     }
 }
 
-/// The irradiance after a run whose state is saved and loaded between all steps.
-fn resumed<S: Solver + Serialize + DeserializeOwned>(problem: &Problem, solver: Result<S, Error>) -> Vec<Rgb> {
-    let mut solver = solver.unwrap();
+/// The irradiance after a run whose state is saved and loaded after every piece.
+fn resumed(problem: &Problem, mut solver: Box<dyn Solver>) -> Vec<Rgb> {
     while let Some(pieces) = solver.step() {
-        for piece in pieces {
-            let part = solver.part(problem, piece);
-            solver.absorb(problem, part);
-        }
+        let part = solver.part(problem, pieces.start);
+        solver.absorb(problem, part);
         solver = postcard::from_bytes(&postcard::to_stdvec(&solver).unwrap()).unwrap();
     }
     solver.solution(problem).irradiance
@@ -244,16 +236,9 @@ fn interrupted_runs_continue_with_the_same_bits() {
     let room = problem("cubes", 120);
     let factors = form_factors::Settings { resolution: 16, ..Default::default() };
     let settings = &Settings { way: "hemicube".to_owned(), factors, unshot: 1e-2, ..Settings::default() };
-    let mut runs = vec![
-        ("gauss-seidel", resumed(&room, gauss_seidel::solver(&room, settings))),
-        ("direct", resumed(&room, direct::solver(&room, settings))),
-        ("southwell", resumed(&room, Southwell::new(&room, settings))),
-        ("hierarchical", resumed(&room, Hierarchical::new(&room, settings))),
-    ];
-    runs.extend(Form::ALL.map(|form| (form.name(), resumed(&room, jacobi::solver(&room, settings, form)))));
-    assert_eq!(runs.len(), DETERMINISTIC.len());
-    for (name, irradiance) in runs {
-        assert!(irradiance == solve(&room, name, settings).irradiance, "{name}");
+    for entry in DETERMINISTIC {
+        let irradiance = resumed(&room, (entry.make)(&room, settings).unwrap());
+        assert!(irradiance == solve(&room, entry.name, settings).irradiance, "{}", entry.name);
     }
 }
 

@@ -3,15 +3,18 @@
 #![allow(clippy::unwrap_used)]
 
 use isolux_core::math::hash::derive;
+use isolux_core::merge::merge;
+use isolux_core::run::run;
 use isolux_core::solvers::monte_carlo::{Budget, Method, Settings};
 use isolux_core::solvers::{MonteCarlo, Solver};
 use isolux_core::{Problem, Solution};
 use isolux_testing::budget::{assert_t_of, refutes};
-use isolux_testing::ensemble::{Exact, constant_elements, ensemble, solve_until, with_rays};
+use isolux_testing::ensemble::{Exact, constant_elements, ensemble, solve, solve_until, with_rays};
 use isolux_testing::honesty::{of_error, of_student};
 use isolux_testing::projections::Deviation;
 use isolux_testing::scenes::{furnace_answer, problem, sphere_irradiance};
 use isolux_testing::statistics::p_of_t;
+use std::ops::ControlFlow;
 
 const REPLICATES: u32 = 16;
 
@@ -73,6 +76,56 @@ fn squared_errors_are_honest_over_rounds_of_different_sizes() {
     assert!(runs.iter().all(|run| run.work.replicates == 2 * REPLICATES));
     let Deviation { name, t, dof } = of_error(&problem, &runs, &furnace_answer(&problem));
     assert_t_of("honest error bars over rounds", &name, t, dof);
+}
+
+/// A finished run, extended to twice as many rays.
+#[test]
+fn squared_errors_are_honest_when_a_run_is_extended() {
+    let problem = problem("labyrinth:rho=0.5", 796);
+    for name in ["stochastic-jacobi", "auto"] {
+        let method = Method::named(name).unwrap();
+        let replicates = method.natural_replicates();
+        let settings = |seed| Settings { method, replicates, seed, ..constant_elements(100_000) };
+        let runs: Vec<Solution> = (0..32).map(|seed| solve_extended(&problem, settings(seed), 200_000)).collect();
+        assert!(runs.iter().all(|run| run.work.replicates == 2 * replicates && run.work.rays > 180_000));
+        let Deviation { name, t, dof } = of_error(&problem, &runs, &furnace_answer(&problem));
+        assert_t_of("honest error bars of extended runs", &name, t, dof);
+    }
+}
+
+fn solve_extended(problem: &Problem, settings: Settings, rays: u64) -> Solution {
+    let mut solver = MonteCarlo::new(problem, settings).unwrap();
+    run(&mut solver, problem, |_| ControlFlow::Continue(()));
+    solver.go_on(problem, Budget::Rays(rays)).unwrap();
+    run(&mut solver, problem, |_| ControlFlow::Continue(()))
+}
+
+/// Two runs of different sizes, made one.
+#[test]
+fn squared_errors_are_honest_when_runs_are_merged() {
+    let problem = problem("labyrinth:rho=0.5", 796);
+    let merged = |seed: u64| {
+        let part = |k: u64| solve(&problem, Settings { seed: 2 * seed + k, ..with_rays(20_000 * (k + 1)) });
+        merge(&problem, &[part(0), part(1)]).unwrap()
+    };
+    let runs: Vec<Solution> = (0..48).map(merged).collect();
+    let Deviation { name, t, dof } = of_error(&problem, &runs, &furnace_answer(&problem));
+    assert_t_of("honest error bars of merged runs", &name, t, dof);
+}
+
+/// The fault: a run is merged with itself, under the name of another seed.
+#[test]
+fn merged_runs_that_are_not_independent_are_seen() {
+    let problem = problem("sphere:rho=0.5", 8 * 16);
+    let merged = |seed| {
+        let one = solve(&problem, Settings { seed, ..with_rays(20_000) });
+        let mut other = one.clone();
+        other.provenance.seed += 1000;
+        merge(&problem, &[one, other]).unwrap()
+    };
+    let runs: Vec<Solution> = (0..48).map(merged).collect();
+    let Deviation { t, dof, .. } = of_error(&problem, &runs, &sphere_irradiance(&problem));
+    assert!(refutes(p_of_t(t, dof)), "t = {t}");
 }
 
 /// The fault: replicates come in pairs that share their random numbers.

@@ -20,7 +20,7 @@ pub fn run(
     watch(solver, problem, |solver| observe(&solver.progress()))
 }
 
-/// As [`run`], with somebody who sees the solver itself, and may ask it for the best solution so far.
+/// As [`run`], with somebody who sees the solver itself, and may ask it for the best solution so far or save its state.
 pub fn watch(
     solver: &mut dyn Solver,
     problem: &Problem,
@@ -28,15 +28,11 @@ pub fn watch(
 ) -> Solution {
     let window = PIECES_PER_THREAD * rayon::current_num_threads() as u64;
     while let Some(pieces) = solver.step() {
-        let mut start = pieces.start;
-        while start < pieces.end {
-            let end = (start + window).min(pieces.end);
-            let parts: Vec<Part> = (start..end).into_par_iter().map(|piece| solver.part(problem, piece)).collect();
-            parts.into_iter().for_each(|part| solver.absorb(problem, part));
-            start = end;
-            if observe(solver).is_break() {
-                return solver.solution(problem);
-            }
+        let now = pieces.start..pieces.end.min(pieces.start + window);
+        let parts: Vec<Part> = now.into_par_iter().map(|piece| solver.part(problem, piece)).collect();
+        parts.into_iter().for_each(|part| solver.absorb(problem, part));
+        if observe(solver).is_break() {
+            break;
         }
     }
     solver.solution(problem)

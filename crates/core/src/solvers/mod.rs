@@ -15,20 +15,22 @@ pub use monte_carlo::MonteCarlo;
 
 use crate::form_factors::Row;
 use crate::solvers::direct_light::Received;
+use crate::solvers::monte_carlo::Budget;
 use crate::transport::bundle_gather::Sums;
 use crate::transport::{Span, Spot};
-use crate::{Problem, Solution};
+use crate::{Accuracy, Error, Problem, Solution};
 use std::ops::Range;
 
 /// A radiosity algorithm as a sequence of steps, each made of independent pieces.
 ///
 /// A driver (see [`crate::run`]) calls [`step`](Solver::step), computes the [`part`](Solver::part)s of all pieces in any
 /// order, on any threads or machines, and [`absorb`](Solver::absorb)s them **in the order of their pieces**. So the
-/// result has the same bits for any number of workers. The state is plain data (serde): saved between steps it is a
-/// checkpoint.
+/// result has the same bits for any number of workers. The state is plain data (serde), saved with the name of its type: a
+/// checkpoint, whenever no piece is being absorbed.
+#[typetag::serde]
 pub trait Solver: Send + Sync {
-    /// The pieces of the next step, or `None` when the work is done. After the last piece of a step has been absorbed the
-    /// next call gives the next step.
+    /// The pieces of the running step that have not been absorbed yet, or `None` when the work is done. After the last piece of
+    /// a step has been absorbed these are the pieces of the next step.
     fn step(&self) -> Option<Range<u64>>;
 
     /// Computes one piece. Pure: the same state and piece give the same bits.
@@ -37,8 +39,25 @@ pub trait Solver: Send + Sync {
     /// Takes in the part of the next piece in order.
     fn absorb(&mut self, problem: &Problem, part: Part);
 
-    /// The best solution so far; may be called between any two steps.
+    /// The best solution so far; may be called whenever no piece is being absorbed.
     fn solution(&self, problem: &Problem) -> Solution;
+
+    /// Extends the work, running or finished, to a larger `budget`. Work that has an end of its own is only as long as it is.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a budget that does not extend the work, or means nothing to the method.
+    fn go_on(&mut self, _: &Problem, budget: Budget) -> Result<(), Error> {
+        let allowed = "a deterministic method draws no random numbers, and has an end of its own";
+        let refused = |name, value: String| Err(Error::Parameter { name, value, allowed });
+        match budget {
+            Budget::Rays(rays) => refused("rays", rays.to_string()),
+            Budget::Accuracy { accuracy, .. } => refused("error", accuracy.error.to_string()),
+            Budget::Heuristic | Budget::Endless => Ok(()),
+        }
+    }
+
+    /// Whether a loaded state has a value for each element of `problem` wherever it needs one.
+    fn fits(&self, problem: &Problem) -> bool;
 
     /// How far the work is, for people.
     fn progress(&self) -> Progress;
@@ -104,6 +123,8 @@ pub struct Progress {
     pub unshot: f64,
     /// [`Solution::rms_error`] so far, if known.
     pub rms_error: Option<f64>,
+    /// The accuracy that is asked for, if one is.
+    pub asked: Option<Accuracy>,
     /// How many times as large the error is as the one that is asked for, if one is, and it is known.
     pub excess: Option<f64>,
 }

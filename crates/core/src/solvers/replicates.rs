@@ -1,14 +1,11 @@
 //! Independent replicates: their mean is the estimate, their spread its error bar.
 //!
 //! Replicates of one *round* have the same number of rays each, so their mean and variance are those of a plain sample
-//! (Welford). Rounds of different sizes are averaged with weights: `E = Σ w_k E_k`, `V = Σ w_k² V_k`. The weights are the inverse of
-//! the rounds' variances, of all elements together: no element's own noise decides about it, and a method that gets better with more
-//! rays is not held back by its first steps. Where there are few elements the weights are the numbers of rays.
+//! (Welford). Rounds of different sizes are averaged with weights: `E = Σ w_k E_k`, `V = Σ w_k² V_k`, by what they are worth
+//! ([`precision`]). Where there are few elements the weights are the numbers of rays.
 
 use crate::math::Rgb;
-
-/// With fewer elements one of them might decide about the weights.
-const FEW_ELEMENTS: usize = 64;
+use crate::precision::{Known, precision};
 
 /// Running mean and variance per element over replicates and rounds, 48 bytes an element.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -34,6 +31,13 @@ impl Replicates {
         Replicates { mean: zeros(), sum_sq_dev: zeros(), ..Replicates::default() }
     }
 
+    /// Whether they are of so many elements.
+    pub fn fits(&self, elements: usize) -> bool {
+        [self.mean.len(), self.sum_sq_dev.len()] == [elements; 2]
+            && [0, elements].contains(&self.earlier_mean.len())
+            && self.earlier_mean.len() == self.earlier_variance.len()
+    }
+
     /// Adds one replicate that took `rays` rays, its estimates in the order of the elements, whose areas are `area(e)` [m²].
     ///
     /// The area-weighted mean square of its distance from the mean of those before, of luminance, times `(n - 1) / n`: an
@@ -55,23 +59,22 @@ impl Replicates {
         (self.count > 1).then_some(square / total_area * (1.0 - f64::from(share)))
     }
 
-    /// What the running round is worth: one over its variance, relative to each element's mean and the scene's, and at most 1 for an
-    /// element that is hardly known.
+    /// What the running round is worth.
     fn measure_precision(&self, area: impl Fn(u32) -> f32) -> f64 {
-        if self.mean.len() < FEW_ELEMENTS || self.count < 2 {
-            return self.rays as f64;
-        }
-        let areas = || (0..self.mean.len() as u32).map(|e| f64::from(area(e)));
-        let mean = |(area, mean): (f64, &Rgb)| area * mean.luminance_f64();
-        let scene_mean = areas().zip(&self.mean).map(mean).sum::<f64>() / areas().sum::<f64>();
-        let freedom = f64::from(self.count) * f64::from(self.count - 1);
-        let variance = |(area, (mean, sum)): (f64, (&Rgb, &Rgb))| {
-            let scale = (mean.luminance_f64() + scene_mean).powi(2).max(f64::MIN_POSITIVE);
-            area * (sum.luminance_f64() / freedom / scale).min(1.0)
+        let freedom = f64::from(self.count) * f64::from(self.count.saturating_sub(1));
+        let known = |(e, (mean, sum)): (u32, (&Rgb, &Rgb))| Known {
+            area: f64::from(area(e)),
+            mean: mean.luminance_f64(),
+            variance: sum.luminance_f64() / freedom,
         };
-        let variance = areas().zip(self.mean.iter().zip(&self.sum_sq_dev)).map(variance).sum::<f64>();
-        // Rounds without any noise, as in the dark, weigh the same.
-        if variance > 0.0 { 1.0 / variance } else { f64::from(self.count) }
+        let all = (0..self.mean.len() as u32).zip(self.mean.iter().zip(&self.sum_sq_dev)).map(known);
+        match precision(all) {
+            None => self.rays as f64,
+            _ if self.count < 2 => self.rays as f64,
+            Some(precision) if precision.is_finite() => precision,
+            // Rounds without any noise, as in the dark, weigh the same.
+            Some(_) => f64::from(self.count),
+        }
     }
 
     /// Closes the running round, so that replicates of another size can follow.

@@ -45,6 +45,11 @@ impl Source {
         let elements = problem.mesh.elements().map(|e| seen(radiosity(e)));
         Source(elements.chain([seen(Rgb::BLACK)]).collect())
     }
+
+    /// Whether it is of the elements of `problem`, or of none.
+    pub fn fits(&self, problem: &Problem) -> bool {
+        [0, problem.mesh.len() + 1].contains(&self.0.len())
+    }
 }
 
 /// What the crossings of each element have seen, 32 bytes an element: sums of radiosities [lm/m²], and their number.
@@ -60,6 +65,11 @@ impl Sums {
     /// Nothing yet.
     pub fn new(problem: &Problem) -> Sums {
         Sums(vec![Sum::default(); problem.mesh.len() + 1])
+    }
+
+    /// Whether they are of the elements of `problem`, or of none.
+    pub fn fits(&self, problem: &Problem) -> bool {
+        [0, problem.mesh.len() + 1].contains(&self.0.len())
     }
 
     /// Forgets everything and keeps the memory.

@@ -32,7 +32,7 @@ pub struct Direct {
 /// # Errors
 /// Those of [`MatrixSolver::new`]; [`Error::Parameter`] for more than 4000 elements, or a surface that reflects all it
 /// receives: then there may be no solution.
-pub fn solver(problem: &Problem, settings: &Settings) -> Result<MatrixSolver<Direct>, Error> {
+pub fn solver(problem: &Problem, settings: &Settings) -> Result<MatrixSolver, Error> {
     let refuse = |name, value: String, allowed| Err(Error::Parameter { name, value, allowed });
     let mesh = &problem.mesh;
     if mesh.len() > MOST_ELEMENTS {
@@ -67,6 +67,7 @@ impl Direct {
     }
 }
 
+#[typetag::serde]
 impl Method for Direct {
     fn stage(&self) -> &'static str {
         "solving the dense system"
@@ -97,6 +98,10 @@ impl Method for Direct {
 
     fn irradiance(&self) -> &[Light] {
         &self.irradiance
+    }
+
+    fn fits(&self, elements: usize) -> bool {
+        self.irradiance.len() == elements
     }
 
     fn unshot(&self) -> f64 {

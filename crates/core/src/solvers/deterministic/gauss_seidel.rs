@@ -42,7 +42,7 @@ pub struct GaussSeidel {
 ///
 /// # Errors
 /// Those of [`MatrixSolver::new`].
-pub fn solver(problem: &Problem, settings: &Settings) -> Result<MatrixSolver<GaussSeidel>, Error> {
+pub fn solver(problem: &Problem, settings: &Settings) -> Result<MatrixSolver, Error> {
     MatrixSolver::new(problem, settings, NAME, |surfaces| GaussSeidel::new(surfaces, settings.unshot))
 }
 
@@ -70,6 +70,7 @@ impl GaussSeidel {
     }
 }
 
+#[typetag::serde]
 impl Method for GaussSeidel {
     fn stage(&self) -> &'static str {
         "gathering"
@@ -119,6 +120,10 @@ impl Method for GaussSeidel {
 
     fn irradiance(&self) -> &[Light] {
         &self.irradiance
+    }
+
+    fn fits(&self, elements: usize) -> bool {
+        [self.irradiance.len(), self.radiosity.len()] == [elements; 2]
     }
 
     fn unshot(&self) -> f64 {

@@ -60,7 +60,7 @@ pub struct Jacobi {
 ///
 /// # Errors
 /// Those of [`MatrixSolver::new`].
-pub fn solver(problem: &Problem, settings: &Settings, form: Form) -> Result<MatrixSolver<Jacobi>, Error> {
+pub fn solver(problem: &Problem, settings: &Settings, form: Form) -> Result<MatrixSolver, Error> {
     MatrixSolver::new(problem, settings, form.name(), |surfaces| Jacobi::new(surfaces, form, settings.unshot))
 }
 
@@ -82,6 +82,7 @@ impl Jacobi {
     }
 }
 
+#[typetag::serde]
 impl Method for Jacobi {
     fn stage(&self) -> &'static str {
         if self.form == Form::Gather { "gathering" } else { "shooting" }
@@ -133,6 +134,10 @@ impl Method for Jacobi {
 
     fn irradiance(&self) -> &[Light] {
         &self.irradiance
+    }
+
+    fn fits(&self, elements: usize) -> bool {
+        [self.irradiance.len(), self.sent.len(), self.arrived.len()] == [elements; 3]
     }
 
     fn unshot(&self) -> f64 {

@@ -17,7 +17,9 @@ const ROWS_PER_PIECE: u64 = 16;
 /// An iteration that has not come to its end after so many sweeps over all elements never will.
 pub const MOST_SWEEPS: u64 = 20_000;
 
-/// What iterates on the system. Pieces of a step are computed on any threads and absorbed in order.
+/// What iterates on the system. Pieces of a step are computed on any threads and absorbed in order. State is saved with the name of its
+/// type.
+#[typetag::serde]
 pub trait Method: Send + Sync {
     /// For people.
     fn stage(&self) -> &'static str;
@@ -36,13 +38,16 @@ pub trait Method: Send + Sync {
     /// Irradiance [lux] of every element so far.
     fn irradiance(&self) -> &[Light];
 
+    /// Whether a loaded state has a value for each of so many elements.
+    fn fits(&self, elements: usize) -> bool;
+
     /// Luminous flux [lm] that is not distributed yet, nearly.
     fn unshot(&self) -> f64;
 }
 
 /// A [`Method`] with the matrix it works on.
 #[derive(serde::Serialize, serde::Deserialize)]
-pub struct MatrixSolver<M> {
+pub struct MatrixSolver {
     name: Cow<'static, str>,
     settings: Settings,
     /// Made from the settings, again if the state was loaded; `None` if that fails with another problem than before.
@@ -53,19 +58,19 @@ pub struct MatrixSolver<M> {
     rows: Vec<Row>,
     surfaces: Surfaces,
     system: Option<System>,
-    method: M,
+    method: Box<dyn Method>,
     absorbed_pieces: u64,
 }
 
-impl<M: Method> MatrixSolver<M> {
+impl MatrixSolver {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::UnknownName`] for settings that are refused, or a matrix that is too large.
-    pub fn new(
+    pub fn new<M: Method + 'static>(
         problem: &Problem,
         settings: &Settings,
         name: &'static str,
         method: impl FnOnce(&Surfaces) -> M,
-    ) -> Result<MatrixSolver<M>, Error> {
+    ) -> Result<MatrixSolver, Error> {
         check(problem, settings)?;
         let surfaces = Surfaces::of(problem);
         Ok(MatrixSolver {
@@ -74,7 +79,7 @@ impl<M: Method> MatrixSolver<M> {
             way: OnceLock::from(Some(form_factors::way(&settings.way, problem, &settings.factors)?)),
             elements: problem.mesh.len() as u64,
             rows: Vec::new(),
-            method: method(&surfaces),
+            method: Box::new(method(&surfaces)),
             surfaces,
             system: None,
             absorbed_pieces: 0,
@@ -107,9 +112,10 @@ impl<M: Method> MatrixSolver<M> {
     }
 }
 
-impl<M: Method> Solver for MatrixSolver<M> {
+#[typetag::serde]
+impl Solver for MatrixSolver {
     fn step(&self) -> Option<Range<u64>> {
-        self.pieces().map(|pieces| 0..pieces)
+        self.pieces().map(|pieces| self.absorbed_pieces..pieces)
     }
 
     fn part(&self, problem: &Problem, piece: u64) -> Part {
@@ -166,6 +172,12 @@ impl<M: Method> Solver for MatrixSolver<M> {
         }
     }
 
+    fn fits(&self, problem: &Problem) -> bool {
+        let elements = problem.mesh.len();
+        let system = self.system.as_ref().is_none_or(|system| system.fits(elements));
+        self.elements == elements as u64 && system && self.surfaces.fits(elements) && self.method.fits(elements)
+    }
+
     /// The rows of the matrix are most of the work, so they stand for rays.
     fn progress(&self) -> Progress {
         let (stage, done, unshot) = match &self.system {
@@ -175,7 +187,15 @@ impl<M: Method> Solver for MatrixSolver<M> {
                 (self.method.stage(), self.elements, unshot)
             }
         };
-        Progress { stage, rays: done, rays_in_all: Some(self.elements), unshot, rms_error: None, excess: None }
+        Progress {
+            stage,
+            rays: done,
+            rays_in_all: Some(self.elements),
+            unshot,
+            rms_error: None,
+            asked: None,
+            excess: None,
+        }
     }
 }
 

@@ -101,9 +101,10 @@ impl Southwell {
     }
 }
 
+#[typetag::serde]
 impl Solver for Southwell {
     fn step(&self) -> Option<Range<u64>> {
-        self.shooter.map(|_| 0..self.pieces())
+        self.shooter.map(|_| self.absorbed_pieces..self.pieces())
     }
 
     /// Landings are fluxes [lm].
@@ -167,8 +168,22 @@ impl Solver for Southwell {
         }
     }
 
+    fn fits(&self, problem: &Problem) -> bool {
+        let elements = problem.mesh.len();
+        let shooter = self.shooter.is_none_or(|shooter| (shooter as usize) < elements);
+        shooter && [self.irradiance.len(), self.unshot.len()] == [elements; 2] && self.surfaces.fits(elements)
+    }
+
     fn progress(&self) -> Progress {
         let unshot = self.flux.unshot / self.flux.emitted.max(f64::MIN_POSITIVE);
-        Progress { stage: "shooting", rays: self.rays, rays_in_all: None, unshot, rms_error: None, excess: None }
+        Progress {
+            stage: "shooting",
+            rays: self.rays,
+            rays_in_all: None,
+            unshot,
+            rms_error: None,
+            asked: None,
+            excess: None,
+        }
     }
 }

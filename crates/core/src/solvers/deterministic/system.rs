@@ -33,6 +33,11 @@ impl Surfaces {
         }
     }
 
+    /// Whether they are those of so many elements.
+    pub fn fits(&self, elements: usize) -> bool {
+        [self.emission.len(), self.reflectivity.len(), self.area.len()] == [elements; 3]
+    }
+
     /// Radiosity [lm/m²] of element `i` under the irradiance `e` [lux].
     pub fn radiosity(&self, i: usize, e: Light) -> Light {
         std::array::from_fn(|c| self.emission[i][c] + self.reflectivity[i][c] * e[c])
@@ -55,6 +60,11 @@ impl Surfaces {
 }
 
 impl System {
+    /// Whether it is that of so many elements.
+    pub fn fits(&self, elements: usize) -> bool {
+        self.factors.len() == elements && self.surfaces.fits(elements)
+    }
+
     /// `(F B)_i` [lux] for the radiosities `b`.
     pub fn gathered(&self, i: usize, b: &[Light]) -> Light {
         self.factors.row(i).fold([0.0; 3], |sum, (j, f)| std::array::from_fn(|c| sum[c] + f * b[j][c]))

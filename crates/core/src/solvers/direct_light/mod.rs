@@ -89,6 +89,11 @@ impl DirectLight {
         }
     }
 
+    /// Whether a loaded state is of the elements of `problem`.
+    pub fn fits(&self, problem: &Problem) -> bool {
+        self.elements == problem.mesh.len() && self.neighbours.fits(self.elements)
+    }
+
     /// Begins the trial.
     pub fn begin_trial(&mut self) {
         (self.rounds, self.rays) = (0, f64::from(RAYS_OF_TRIAL) / TRIAL_OF as f64);

@@ -57,6 +57,11 @@ impl Neighbours {
         Neighbours { learned: of_all.clone(), fresh: of_all }
     }
 
+    /// Whether they are of so many elements.
+    pub fn fits(&self, elements: usize) -> bool {
+        [self.learned.len(), self.fresh.len()] == [elements.div_ceil(NEIGHBOURS); 2]
+    }
+
     /// Takes in what `rays` rays of element `e` tell: its irradiance [lux], and the variance of a ray with each share [lux²].
     pub fn learn(&mut self, e: u32, rays: u32, irradiance: f32, variances: [f32; COSINE_SHARES.len()]) {
         let told = Learned { rays: 1.0, irradiance, variances, share: FIRST_SHARE };

@@ -15,7 +15,7 @@ pub trait CompleteSolution: Debug + Send + Sync {
     /// Starts an independent complete solution of about `rays` rays.
     fn restart(&mut self, problem: &Problem, seed: u64, rays: u64, experience: &Experience);
 
-    /// The independent pieces of the running step; none when the solution is complete.
+    /// The independent pieces of the running step that have not been absorbed yet; none when the solution is complete.
     fn pieces(&self) -> Option<Range<u64>>;
 
     /// Computes one piece. Pure.
@@ -33,6 +33,9 @@ pub trait CompleteSolution: Debug + Send + Sync {
 
     /// Gives the memory of the elements back, when the last complete solution is done and its irradiance has been taken.
     fn retire(&mut self) {}
+
+    /// Whether a loaded state has a value for each element wherever it needs one. One that was retired has none.
+    fn fits(&self, problem: &Problem) -> bool;
 
     /// What it teaches the next one.
     fn experience(&self) -> Experience;

@@ -66,6 +66,16 @@ impl Light {
         }
     }
 
+    /// Whether it is the light on so many elements.
+    pub fn fits(&self, elements: usize, has_lamps: bool) -> bool {
+        let of_all = [self.direct.len(), self.indirect.len(), self.unshot.len(), self.landed.len()];
+        of_all == [elements; 4]
+            && self.lamps.len() == if has_lamps { elements } else { 0 }
+            && [0, elements].contains(&self.footprint.len())
+            && self.fresh.len() == self.footprint.len()
+            && self.active.iter().chain(self.touched.iter().flatten()).all(|&e| (e as usize) < elements)
+    }
+
     pub fn clear(&mut self) {
         for flux in [&mut self.lamps, &mut self.direct, &mut self.indirect, &mut self.unshot] {
             flux.fill(Rgb::BLACK);

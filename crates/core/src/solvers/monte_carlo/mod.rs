@@ -15,6 +15,7 @@ mod meaning;
 pub mod method;
 pub mod orders;
 mod relaxation;
+mod rounds;
 mod settings;
 mod sources;
 mod walks;
@@ -30,7 +31,6 @@ use super::{Part, Progress, Solver, budget};
 use crate::math::Rgb;
 use crate::math::hash::derive;
 use crate::solution::{Balance, Provenance, Solution, Work};
-use crate::transport::Leaving;
 use crate::{Error, Problem};
 use std::ops::Range;
 
@@ -61,6 +61,10 @@ pub struct MonteCarlo {
     rays: u64,
     finished: bool,
     rms_error: Option<f64>,
+    /// What was asked for before the budget of the settings, if that extends the run.
+    extended: Vec<Budget>,
+    /// Rays that one more round shall bring the run to.
+    until: Option<u64>,
     /// How much larger the error is than the one that is asked for.
     excess: Option<f64>,
 }
@@ -96,10 +100,7 @@ impl MonteCarlo {
             Budget::Accuracy { most_rays: Some(rays), .. } => first.min(rays),
             _ => rays_in_all.unwrap_or(first),
         };
-        let most_each = most_rays_each(problem, &settings);
-        let replicates_in_round =
-            rays_in_round.div_ceil(most_each).clamp(settings.replicates.into(), u32::MAX.into()) as u32;
-        let rays_each = rays_in_round.div_ceil(replicates_in_round.into());
+        let (replicates_in_round, rays_each) = rounds::shape(problem, &settings, rays_in_round);
         let experience = Experience::expected(problem);
         let mut complete = (settings.method.order.entry().make)(problem, &settings);
         complete.restart(problem, derive(settings.seed, 0), rays_each, &experience);
@@ -117,6 +118,8 @@ impl MonteCarlo {
             rays: 0,
             finished: false,
             rms_error: None,
+            extended: Vec::new(),
+            until: None,
             excess: None,
         })
     }
@@ -124,6 +127,10 @@ impl MonteCarlo {
     /// Whether there is what was asked for, or no light at all.
     fn is_finished(&self) -> bool {
         self.finished || self.is_dark()
+    }
+
+    fn round_is_complete(&self) -> bool {
+        self.replicates.count_in_round() == self.replicates_in_round
     }
 
     fn is_dark(&self) -> bool {
@@ -142,43 +149,24 @@ impl MonteCarlo {
         if let Some(certainty) = self.totals.certainty(self.replicates.weight()) {
             self.rms_error = Some(certainty.rms());
         }
-        if self.replicates.count_in_round() == self.replicates_in_round {
+        if self.round_is_complete() {
             self.next_round(problem);
         }
         if self.is_finished() {
             return self.complete.retire();
         }
-        let seed = derive(self.settings.seed, u64::from(self.replicate));
-        self.complete.restart(problem, seed, self.rays_each, &self.experience);
+        self.start_replicate(problem);
     }
 
-    /// Decides whether the round that is complete was the last one, or how large the next one is.
-    fn next_round(&mut self, problem: &Problem) {
-        let most_each = most_rays_each(problem, &self.settings);
-        match self.settings.budget {
-            Budget::Heuristic | Budget::Rays(_) => self.finished = true,
-            Budget::Endless => self.rays_each = (2 * self.rays_each).min(most_each),
-            Budget::Accuracy { accuracy, most_rays } => {
-                let excess = accuracy.excess(problem, &self.solution(problem));
-                let left = most_rays.map_or(u64::MAX, |most| most.saturating_sub(self.rays));
-                self.excess = Some(excess);
-                self.finished = excess <= 1.0 || left < u64::from(self.settings.replicates);
-                let round = rays_of_next_round(self.rays, excess).min(left);
-                self.rays_in_all = Some(self.rays + if self.finished { 0 } else { round });
-                self.replicates_in_round =
-                    round.div_ceil(most_each).clamp(self.settings.replicates.into(), u32::MAX.into()) as u32;
-                self.rays_each = round.div_ceil(self.replicates_in_round.into());
-            }
-        }
-        if !self.finished {
-            self.totals.close_round(self.replicates.weight());
-            self.replicates.close_round();
-        }
+    fn start_replicate(&mut self, problem: &Problem) {
+        let seed = derive(self.settings.seed, u64::from(self.replicate));
+        self.complete.restart(problem, seed, self.rays_each, &self.experience);
     }
 
     fn provenance(&self, problem: &Problem) -> Provenance {
         let mut parameters = self.settings.budget.parameters();
         parameters.push(("replicates".to_owned(), self.settings.replicates.to_string()));
+        parameters.extend(self.extended_from());
         if self.settings.method.has_leaving() {
             parameters.push(("leaving".to_owned(), self.settings.leaving.name().to_owned()));
         }
@@ -195,6 +183,7 @@ impl MonteCarlo {
     }
 }
 
+#[typetag::serde]
 impl Solver for MonteCarlo {
     fn step(&self) -> Option<Range<u64>> {
         if self.is_finished() { None } else { self.complete.pieces() }
@@ -231,6 +220,16 @@ impl Solver for MonteCarlo {
         }
     }
 
+    fn go_on(&mut self, problem: &Problem, budget: Budget) -> Result<(), Error> {
+        self.extend(problem, budget)
+    }
+
+    fn fits(&self, problem: &Problem) -> bool {
+        // The memory of the last complete solution was given back.
+        let is_retired = self.replicate > 0 && self.is_finished();
+        self.replicates.fits(problem.mesh.len()) && (is_retired || self.complete.fits(problem))
+    }
+
     fn progress(&self) -> Progress {
         Progress {
             stage: self.complete.stage(),
@@ -241,25 +240,9 @@ impl Solver for MonteCarlo {
                 unshot / emitted.max(f64::MIN_POSITIVE)
             },
             rms_error: self.rms_error,
+            asked: self.settings.budget.accuracy(),
             excess: self.excess,
         }
-    }
-}
-
-/// Rays of the round that shall bring the error down to what is asked for, where it is `excess` times as large after so many
-/// `rays`: it falls with the root of the rays. A little more than that, so that it need not be tried again; not many times as many, for the
-/// error is not known well after few, and not very few, for a round has its cost.
-fn rays_of_next_round(rays: u64, excess: f64) -> u64 {
-    let (rays, excess) = (rays as f64, if excess.is_nan() { f64::INFINITY } else { excess });
-    ((1.1 * excess * excess - 1.0) * rays).clamp(rays / 4.0, 4.0 * rays) as u64
-}
-
-/// Most rays of a complete solution.
-fn most_rays_each(problem: &Problem, settings: &Settings) -> u64 {
-    if settings.method.has_leaving() && settings.leaving == Leaving::WhereLanded {
-        (RAYS_PER_ELEMENT * problem.mesh.len() as u64).clamp(1000, MOST_RAYS_EACH)
-    } else {
-        MOST_RAYS_EACH
     }
 }
 

@@ -70,6 +70,16 @@ impl Budget {
             }
         }
     }
+
+    /// The number of rays, if it is one.
+    pub fn rays(self) -> Option<u64> {
+        if let Budget::Rays(rays) = self { Some(rays) } else { None }
+    }
+
+    /// The accuracy that is asked for, if one is.
+    pub fn accuracy(self) -> Option<Accuracy> {
+        if let Budget::Accuracy { accuracy, .. } = self { Some(accuracy) } else { None }
+    }
 }
 
 /// Those of stochastic Jacobi: a program chooses the method, and the replicates that suit it ([`Method::natural_replicates`]).

@@ -219,9 +219,10 @@ fn pairs(problem: &Problem, clusters: &Clusters) -> Vec<Link> {
     facing.map(|(p, q)| Link { ends: [p, q], exchange: f64::NAN }).collect()
 }
 
+#[typetag::serde]
 impl Solver for Hierarchical {
     fn step(&self) -> Option<Range<u64>> {
-        (self.stage != Stage::Done).then(|| 0..self.pieces() as u64)
+        (self.stage != Stage::Done).then(|| self.absorbed_pieces as u64..self.pieces() as u64)
     }
 
     fn part(&self, problem: &Problem, piece: u64) -> Part {
@@ -268,9 +269,18 @@ impl Solver for Hierarchical {
         }
     }
 
+    fn fits(&self, problem: &Problem) -> bool {
+        let (elements, clusters) = (problem.mesh.len(), self.clusters.all.len());
+        let ends = self.links.iter().chain(&self.refined).flat_map(|link| link.ends);
+        [self.radiosity.len(), self.arrived.len()] == [clusters; 2]
+            && self.irradiance.len() == elements
+            && self.surfaces.fits(elements)
+            && { ends }.all(|end| (end as usize) < clusters)
+    }
+
     fn progress(&self) -> Progress {
         let stage = if self.stage == Stage::Refining { "refining links" } else { "gathering over links" };
         let unshot = self.unshot / self.emitted.max(f64::MIN_POSITIVE);
-        Progress { stage, rays: 0, rays_in_all: None, unshot, rms_error: None, excess: None }
+        Progress { stage, rays: 0, rays_in_all: None, unshot, rms_error: None, asked: None, excess: None }
     }
 }

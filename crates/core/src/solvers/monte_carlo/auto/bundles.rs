@@ -62,6 +62,10 @@ impl Bundles {
         }
     }
 
+    pub fn fits(&self, problem: &Problem) -> bool {
+        self.source.fits(problem) && self.sums.fits(problem)
+    }
+
     pub fn pieces(&self) -> Range<u64> {
         self.absorbed..self.all_pieces().min(self.absorbed + IN_FLIGHT)
     }

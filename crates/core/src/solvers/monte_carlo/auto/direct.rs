@@ -29,6 +29,10 @@ impl Direct {
         Direct { light, rays: 0, ray_flux: 0.0, tried: false, absorbed: 0 }
     }
 
+    pub fn fits(&self, problem: &Problem) -> bool {
+        self.light.fits(problem)
+    }
+
     /// What rays are worth, if they were tried.
     pub fn learned(&self) -> Option<&Neighbours> {
         self.tried.then_some(self.light.neighbours())

@@ -39,7 +39,7 @@ impl Local {
     }
 
     pub fn pieces(&self) -> Range<u64> {
-        0..shooting::pieces(self.allocation.rays())
+        self.absorbed..shooting::pieces(self.allocation.rays())
     }
 
     /// Gathers along the lines of `piece` what elements reflect in `shot`.

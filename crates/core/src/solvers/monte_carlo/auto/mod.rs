@@ -238,6 +238,10 @@ impl CompleteSolution for Auto {
         self.shooting.irradiance(problem, e)
     }
 
+    fn fits(&self, problem: &Problem) -> bool {
+        self.shooting.fits(problem) && self.direct.fits(problem) && self.bundles.fits(problem)
+    }
+
     fn rays(&self) -> u64 {
         self.shooting.rays() + self.rays_after
     }

@@ -37,7 +37,7 @@ impl Surplus {
     }
 
     pub fn pieces(&self) -> Range<u64> {
-        0..shooting::pieces(self.allocation.rays())
+        self.absorbed..shooting::pieces(self.allocation.rays())
     }
 
     /// Shoots the rays of `piece`.

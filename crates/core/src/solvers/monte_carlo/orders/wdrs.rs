@@ -174,7 +174,7 @@ impl CompleteSolution for Wdrs {
     }
 
     fn pieces(&self) -> Option<Range<u64>> {
-        (!self.complete).then(|| 0..shooting::pieces(self.allocation.rays()))
+        (!self.complete).then(|| self.pieces_absorbed..shooting::pieces(self.allocation.rays()))
     }
 
     fn part(&self, problem: &Problem, piece: u64) -> Part {
@@ -219,6 +219,11 @@ impl CompleteSolution for Wdrs {
 
     fn irradiance(&self, problem: &Problem, e: u32) -> Rgb {
         self.light.on(e) / problem.mesh.area(e)
+    }
+
+    fn fits(&self, problem: &Problem) -> bool {
+        let sources = sources::count(problem);
+        [self.shot.len(), self.sent.len()] == [sources; 2] && self.light.fits(problem.mesh.len(), false)
     }
 
     fn rays(&self) -> u64 {

@@ -218,7 +218,7 @@ impl CompleteSolution for Relaxation {
     }
 
     fn pieces(&self) -> Option<Range<u64>> {
-        self.stage().map(|_| 0..self.draw.pieces())
+        self.stage().map(|_| self.pieces_absorbed..self.draw.pieces())
     }
 
     fn part(&self, problem: &Problem, piece: u64) -> Part {
@@ -251,6 +251,11 @@ impl CompleteSolution for Relaxation {
     fn retire(&mut self) {
         self.light = Light::new(0, false, Leaving::WholeElement);
         self.draw = Draw::Local(Allocation::default());
+    }
+
+    fn fits(&self, problem: &Problem) -> bool {
+        let elements = problem.mesh.len();
+        self.light.fits(elements, !problem.scene.lights.is_empty()) && self.sweeps.fits(elements)
     }
 
     fn rays(&self) -> u64 {

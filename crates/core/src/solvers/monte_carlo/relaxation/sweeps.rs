@@ -32,6 +32,11 @@ impl Sweeps {
         self.balance = Balance::default();
     }
 
+    /// Whether there are sums for so many elements, if any are needed.
+    pub fn fits(&self, elements: usize) -> bool {
+        self.count > 0 && self.flux.len() == if self.count > 1 { elements } else { 0 }
+    }
+
     /// Share of the complete solution's rays that the running sweep has.
     pub fn share(&self) -> f64 {
         f64::from(1u32 << self.done.min(self.count - 1)) / f64::from((1u32 << self.count) - 1)

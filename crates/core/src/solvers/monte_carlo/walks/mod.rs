@@ -163,7 +163,7 @@ impl CompleteSolution for Walks {
 
     fn pieces(&self) -> Option<Range<u64>> {
         let pieces = shooting::pieces(self.particles());
-        (self.pieces_absorbed < pieces).then_some(0..pieces)
+        (self.pieces_absorbed < pieces).then_some(self.pieces_absorbed..pieces)
     }
 
     fn part(&self, problem: &Problem, piece: u64) -> Part {
@@ -201,6 +201,10 @@ impl CompleteSolution for Walks {
     fn irradiance(&self, problem: &Problem, e: u32) -> Rgb {
         let score = to_rgb(&self.scores[e as usize]);
         if self.gathers() { score } else { score / problem.mesh.area(e) }
+    }
+
+    fn fits(&self, problem: &Problem) -> bool {
+        self.scores.len() == problem.mesh.len()
     }
 
     fn rays(&self) -> u64 {
