@@ -10,7 +10,7 @@
 //! light is evened out together, direct and reflected. Each pass makes V smaller, `V_i' = Σ w² V`, and so protects more.
 //!
 //! Exchanges are symmetric, so the flux on every object is kept, to rounding. Biased: curved light becomes flatter by part of
-//! its noise; even light and straight gradients, inside a surface, do not change. Linear in the elements, 150 bytes each, same bits for
+//! its noise; even light and straight gradients, inside a surface, do not change. Linear in the elements, 250 bytes each, same bits for
 //! any number of threads. A solution without noise, or whose noise is not known, stays as it is. `make study-smoothing` measures gain and bias.
 
 use super::cover;
