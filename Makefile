@@ -7,12 +7,13 @@
 #   make study-reference-rooms    real rooms against an independent renderer
 #   make growth                   time to a fixed accuracy from 10^4 to 10^6 elements, in two rooms
 #   make study-methods            all methods on one scene, error and time
+#   make study-smoothing          what taking noise out gains, and its bias, in three rooms
 
 ISOLUX = target/release/isolux
 
 STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count speed
 
-.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods
+.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods study-smoothing
 
 build:
 	cargo build --release --locked
@@ -48,3 +49,6 @@ growth:
 
 study-methods:
 	cargo run --release --locked -p isolux-testing --bin methods
+
+study-smoothing:
+	cargo run --release --locked -p isolux-testing --bin smoothing

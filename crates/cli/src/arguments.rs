@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::numbers::parse_count;
 use isolux_core::Error;
 use isolux_core::scene::Scene;
-use isolux_io::export::ExportOptions;
+use isolux_io::export::{ExportOptions, Smoothing};
 use isolux_io::import::{ImportOptions, LightUnits};
 use std::num::NonZeroU32;
 
@@ -83,6 +83,16 @@ pub struct PictureArguments {
     /// Exposure in stops: luminances in cd/m² are multiplied by 2^EV, so a bright room takes about -7 [default: metered]
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = parse_exposure)]
     exposure: Option<f32>,
+
+    /// Where neighbouring elements even each other out as far as their error bars allow: in pictures (.png .exr .glb), in all
+    /// files but .isolux, or in none. The flux on every object is kept
+    #[arg(long, value_name = "WHERE", default_value = "pictures", value_parser = parse_smoothing)]
+    smooth: Smoothing,
+}
+
+fn parse_smoothing(text: &str) -> Result<Smoothing, String> {
+    let found = Smoothing::ALL.into_iter().find(|smoothing| smoothing.name() == text);
+    found.ok_or_else(|| format!("it is one of {}", Smoothing::ALL.map(Smoothing::name).join(", ")))
 }
 
 fn parse_exposure(text: &str) -> Result<f32, String> {
@@ -99,6 +109,7 @@ impl PictureArguments {
             height: self.height.map(NonZeroU32::get),
             samples: self.samples.get(),
             exposure: self.exposure,
+            smoothing: self.smooth,
             ..ExportOptions::default()
         }
     }

@@ -8,7 +8,7 @@ use crate::output::Outputs;
 use isolux_core::Problem;
 use isolux_core::solvers::Solver;
 use isolux_core::view::VertexField;
-use isolux_io::export::ExportOptions;
+use isolux_io::export::{ExportOptions, Smoothing};
 use std::time::{Duration, Instant};
 
 /// The first draft comes after this time, however rare they are: somebody is waiting for it.
@@ -30,7 +30,7 @@ pub struct Drafts<'a> {
 impl Drafts<'_> {
     /// Drafts of `outputs` with at least `every` of solving between two of them.
     pub fn new(outputs: &Outputs, options: ExportOptions, every: Duration, start: Instant) -> Drafts<'_> {
-        let options = ExportOptions { samples: 1, ..options };
+        let options = ExportOptions { samples: 1, smoothing: Smoothing::None, ..options };
         Drafts { outputs, options, every, start, next: every.min(FIRST), field: None, failure: None }
     }
 

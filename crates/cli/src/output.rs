@@ -154,7 +154,7 @@ impl Outputs {
         display: &mut Display,
         interrupt: &Interrupt,
     ) -> Result<Vec<Written>, Failure> {
-        let lit = LitScene::new(problem, solution);
+        let lit = LitScene::smoothed(problem, solution, options.smoothing);
         let mut written = Vec::new();
         let mut failed = None;
         let mut told = interrupt.is_asked();

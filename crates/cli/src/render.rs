@@ -12,7 +12,9 @@ const EXAMPLES: &str = "\
 Examples:
   isolux render lit.isolux -o view.png
   isolux render lit.isolux -o view.png --camera 1 --width 1920
-  isolux render lit.isolux -o linear.exr -o elements.csv";
+  isolux render lit.isolux -o linear.exr -o elements.csv
+  isolux render lit.isolux -o raw.png --smooth none
+  isolux render lit.isolux -o smoothed.npz --smooth all";
 
 /// Take a picture of a solution, or write it in another format
 #[derive(Clone, Debug, clap::Args)]

@@ -18,6 +18,25 @@ fn a_solution_is_rendered_to_the_same_bytes_as_when_it_was_solved() {
 }
 
 #[test]
+fn tables_are_smoothed_if_asked_pictures_unless_not_and_solutions_never() {
+    let folder = Folder::new();
+    folder.prints(&with(&["solve", "-o", "a.isolux", "-o", "a.csv", "-o", "a.exr"], &SMALL));
+    for smooth in ["pictures", "all", "none"] {
+        let files = ["isolux", "csv", "exr", "json"].map(|kind| format!("{smooth}.{kind}"));
+        let [isolux, csv, exr, json] = files.each_ref().map(String::as_str);
+        let render = ["render", "a.isolux", "--smooth", smooth, "--width", "40"];
+        folder.prints(&[&render[..], &["-o", isolux, "-o", csv, "-o", exr, "-o", json]].concat());
+        assert!(folder.read(isolux) == folder.read("a.isolux"));
+        assert_eq!(folder.read(csv) != folder.read("a.csv"), smooth == "all", "{csv}");
+        assert_eq!(folder.read(exr) != folder.read("a.exr"), smooth == "none", "{exr}");
+        assert_eq!(String::from_utf8_lossy(&folder.read(json)).contains("\"smoothed\""), smooth == "all", "{json}");
+    }
+    assert!(
+        folder.fails(2, &["render", "a.isolux", "--smooth", "much", "-o", "b.png"]).contains("pictures, all, none")
+    );
+}
+
+#[test]
 fn solutions_of_two_seeds_differ_as_their_error_bars_say() {
     let folder = Folder::new();
     for seed in ["1", "2"] {

@@ -57,6 +57,13 @@ pub struct Provenance {
     pub version: String,
 }
 
+impl Provenance {
+    /// The value of the parameter called `name`, if there is one.
+    pub fn parameter(&self, name: &str) -> Option<&str> {
+        self.parameters.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    }
+}
+
 impl Solution {
     /// Radiosity `B = Be + rho E` [lm/m²] of element `e`.
     pub fn radiosity(&self, problem: &Problem, e: u32) -> Rgb {

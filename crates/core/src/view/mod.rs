@@ -3,7 +3,8 @@
 //! ```text
 //! Solution --vertex_field--> VertexField --picture--> Picture (cd/m², and tone-mapped for a screen)
 //!    weld, crease: which element corners are one vertex        camera_rays, default_view: where from
-//!    cover, smooth, seams: what its value is                   surface_light, tone: what is seen there
+//!    neighbours, smooth: noise taken out (of tables, too)      surface_light, tone: what is seen there
+//!    cover, seams: what the value of a vertex is
 //! ```
 
 pub mod camera_rays;
@@ -11,10 +12,11 @@ mod cover;
 mod crease;
 mod default_view;
 mod grid;
+mod neighbours;
 pub mod picture;
 mod plastic;
 mod seams;
-mod smooth;
+pub mod smooth;
 pub mod surface_light;
 pub mod tone;
 pub mod vertex_field;
@@ -23,6 +25,7 @@ mod weld;
 
 pub use picture::{Picture, ViewOptions, exposure, render, render_field};
 pub use seams::EdgePoints;
+pub use smooth::smooth;
 pub use tone::Exposure;
 pub use vertex_field::VertexField;
 

@@ -25,11 +25,23 @@ pub struct VertexField {
 }
 
 impl VertexField {
+    /// With the noise of `solution` taken out as far as its error bars allow ([`super::smooth`]).
     pub fn new(problem: &Problem, solution: &Solution) -> VertexField {
         let vertices = Vertices::new(problem);
         let open = cover::open_shares(problem, solution, &vertices);
-        let values = smooth::smooth(problem, solution, &vertices, &open);
-        let mut field = VertexField::of_values(problem, vertices, &values, &open);
+        let values = smooth::of_open_parts(problem, solution, &vertices, &open);
+        VertexField::without_seams(problem, vertices, &values, &open)
+    }
+
+    /// With all the noise of `solution`.
+    pub fn as_computed(problem: &Problem, solution: &Solution) -> VertexField {
+        let vertices = Vertices::new(problem);
+        let open = cover::open_shares(problem, solution, &vertices);
+        VertexField::without_seams(problem, vertices, &smooth::as_computed(solution, &open), &open)
+    }
+
+    fn without_seams(problem: &Problem, vertices: Vertices, values: &[Rgb], open: &[f32]) -> VertexField {
+        let mut field = VertexField::of_values(problem, vertices, values, open);
         for seam in seams::t_vertices(problem, &field.vertices) {
             let (from, to) = (field.irradiance(seam.from), field.irradiance(seam.to));
             field.irradiance[seam.vertex as usize] = from + (to - from) * seam.t;

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use isolux_core::math::Rgb;
+use isolux_core::view::smooth::SMOOTHED;
 use isolux_core::{Problem, Solution};
 
 /// Something known of every element, in three channels.
@@ -62,6 +63,12 @@ pub fn centre(problem: &Problem, e: u32) -> (Vec3, Vec3) {
     let [a, b, c] = problem.mesh.corners(e);
     let (position, normal) = problem.geometry.surface(place.triangle, (a + b + c) / 3.0);
     (position, if place.back { -normal } else { normal })
+}
+
+/// For comments: `, smoothed within the error bars`, if the noise was taken out of the numbers.
+pub fn smoothed_in_words(solution: &Solution) -> String {
+    let how = solution.provenance.parameter(SMOOTHED);
+    how.map_or_else(String::new, |how| format!(", {SMOOTHED} {how}"))
 }
 
 /// Index of the object to which element `e` belongs.

@@ -9,7 +9,7 @@
 use super::glb_container::GlbBuilder;
 use super::image::encode_png;
 use super::picture::view_options;
-use super::{ExportOptions, LitScene};
+use super::{ExportOptions, LitScene, Smoothing};
 use crate::Error;
 use glam::{Mat3, Quat, Vec2, Vec3};
 use isolux_core::Problem;
@@ -27,13 +27,18 @@ use std::f32::consts::FRAC_1_PI;
 /// [`Error::Invalid`] for a scene too large for the format (4 GiB); [`Error::Core`] for a camera that is not there.
 pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> {
     let exposure = view::exposure(lit.problem, lit.field(), &view_options(options))?;
-    write_field(lit.problem, lit.field(), exposure)
+    write_field(lit.problem, lit.field(), exposure, options.smoothing)
 }
 
-fn write_field(problem: &Problem, field: &VertexField, exposure: Exposure) -> Result<Vec<u8>, Error> {
+fn write_field(
+    problem: &Problem,
+    field: &VertexField,
+    exposure: Exposure,
+    smoothing: Smoothing,
+) -> Result<Vec<u8>, Error> {
     let edge_points = field.edge_points(problem);
     let mut writer = Writer { problem, field, exposure, edge_points, glb: GlbBuilder::new(), images: HashMap::new() };
-    writer.glb.set("asset", asset(exposure));
+    writer.glb.set("asset", asset(exposure, smoothing));
     writer.glb.use_extension("KHR_materials_unlit");
     let mut nodes = Vec::new();
     for (object, elements) in problem.scene.objects.iter().zip(elements_by_object(problem)) {
@@ -52,13 +57,14 @@ fn write_field(problem: &Problem, field: &VertexField, exposure: Exposure) -> Re
     writer.glb.finish()
 }
 
-fn asset(exposure: Exposure) -> Value {
+fn asset(exposure: Exposure, smoothing: Smoothing) -> Value {
     json!({
         "version": "2.0",
         "generator": format!("isolux {}", isolux_core::VERSION),
         "extras": { "isolux": {
             "exposure_stops": exposure.stops,
             "ev100": exposure.ev100(),
+            "smoothing": smoothing.name(),
             "COLOR_0": "radiosity / pi [cd/m^2] times 2^exposure_stops, filmic tone curve (Hable 2010), linear; \
                         divided by the texture's mean where there is a texture",
             "_IRRADIANCE": "irradiance [lux], linear Rec. 709; illuminance = 0.2126 r + 0.7152 g + 0.0722 b",

@@ -14,8 +14,9 @@ pub mod scene_glb;
 mod vtu;
 
 use crate::{Error, solution_file};
-use isolux_core::view::VertexField;
+use isolux_core::view::{self, VertexField};
 use isolux_core::{Problem, Solution};
+use std::borrow::Cow;
 use std::cell::{OnceCell, RefCell};
 use std::path::Path;
 
@@ -33,7 +34,11 @@ pub struct Exporter {
 #[derive(Debug)]
 pub struct LitScene<'a> {
     pub problem: &'a Problem,
-    pub solution: &'a Solution,
+    /// As the tables have it: smoothed, if that was asked for.
+    pub solution: Cow<'a, Solution>,
+    /// As it was computed.
+    pub computed: &'a Solution,
+    smoothing: Smoothing,
     field: OnceCell<VertexField>,
     /// Of a draft; with the field of an earlier one, until the own is there.
     draft: Option<RefCell<Option<VertexField>>>,
@@ -41,7 +46,16 @@ pub struct LitScene<'a> {
 
 impl<'a> LitScene<'a> {
     pub fn new(problem: &'a Problem, solution: &'a Solution) -> LitScene<'a> {
-        LitScene { problem, solution, field: OnceCell::new(), draft: None }
+        LitScene::smoothed(problem, solution, Smoothing::default())
+    }
+
+    /// With the noise taken out of what `smoothing` says.
+    pub fn smoothed(problem: &'a Problem, computed: &'a Solution, smoothing: Smoothing) -> LitScene<'a> {
+        let solution = match smoothing {
+            Smoothing::All => Cow::Owned(view::smooth(problem, computed)),
+            Smoothing::Pictures | Smoothing::None => Cow::Borrowed(computed),
+        };
+        LitScene { problem, solution, computed, smoothing, field: OnceCell::new(), draft: None }
     }
 
     /// A solution that is still being computed, as [`VertexField::draft`] shows it, on the vertices of an `earlier` field.
@@ -52,8 +66,9 @@ impl<'a> LitScene<'a> {
     /// The light as it is looked at.
     pub fn field(&self) -> &VertexField {
         self.field.get_or_init(|| match &self.draft {
-            Some(earlier) => VertexField::draft(self.problem, self.solution, earlier.take()),
-            None => VertexField::new(self.problem, self.solution),
+            Some(earlier) => VertexField::draft(self.problem, self.computed, earlier.take()),
+            None if self.smoothing == Smoothing::None => VertexField::as_computed(self.problem, self.computed),
+            None => VertexField::new(self.problem, self.computed),
         })
     }
 
@@ -63,12 +78,35 @@ impl<'a> LitScene<'a> {
     }
 }
 
+/// Where noise is taken out, see [`mod@view::smooth`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Smoothing {
+    /// In what is looked at: `.png`, `.exr`, `.glb`.
+    #[default]
+    Pictures,
+    /// In tables, too; but not in `.isolux`, which holds what was computed.
+    All,
+    None,
+}
+
+impl Smoothing {
+    pub const ALL: [Smoothing; 3] = [Smoothing::Pictures, Smoothing::All, Smoothing::None];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Smoothing::Pictures => "pictures",
+            Smoothing::All => "all",
+            Smoothing::None => "none",
+        }
+    }
+}
+
 /// All formats. A new one is a file in this folder and a line here.
 pub const FORMATS: &[Exporter] = &[
     Exporter {
         extension: "isolux",
         what: "the whole solution with its scene, to be read again",
-        write: |lit, _| solution_file::write(lit.problem, lit.solution),
+        write: |lit, _| solution_file::write(lit.problem, lit.computed),
     },
     Exporter { extension: "glb", what: "the lit scene, for any viewer of glTF", write: glb::write },
     Exporter { extension: "png", what: "a picture for a screen", write: picture::write_png },
@@ -93,6 +131,7 @@ pub struct ExportOptions {
     /// Exposure of a picture in stops, a stop more is twice as bright (see [`isolux_core::view::tone`]); automatic if
     /// `None`.
     pub exposure: Option<f32>,
+    pub smoothing: Smoothing,
     /// More entries for the summary: what only the caller knows, like the seconds it took.
     pub extras: serde_json::Map<String, serde_json::Value>,
 }
@@ -100,7 +139,8 @@ pub struct ExportOptions {
 impl Default for ExportOptions {
     fn default() -> ExportOptions {
         let extras = serde_json::Map::new();
-        ExportOptions { camera: None, width: 1280, height: None, samples: 16, exposure: None, extras }
+        let smoothing = Smoothing::default();
+        ExportOptions { camera: None, width: 1280, height: None, samples: 16, exposure: None, smoothing, extras }
     }
 }
 

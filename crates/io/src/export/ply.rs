@@ -47,12 +47,13 @@ fn header(problem: &Problem, solution: &Solution) -> String {
     const COLOR: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     let provenance = &solution.provenance;
     let mut header = format!(
-        "ply\nformat binary_little_endian 1.0\ncomment isolux {}: {}, {}, seed {}, {} rays\n",
+        "ply\nformat binary_little_endian 1.0\ncomment isolux {}: {}, {}, seed {}, {} rays{}\n",
         one_line(&provenance.version),
         one_line(&provenance.scene),
         one_line(&provenance.method),
         provenance.seed,
-        solution.work.rays
+        solution.work.rays,
+        elements::smoothed_in_words(solution)
     );
     for (k, object) in problem.scene.objects.iter().enumerate() {
         header += &format!("comment object {k} {}\n", one_line(&object.name));

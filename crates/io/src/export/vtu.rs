@@ -80,7 +80,8 @@ impl Blocks {
 /// readers.
 fn comment(problem: &Problem, solution: &Solution) -> String {
     let p = &solution.provenance;
-    let mut text = format!("isolux {}: {}, {}, seed {}\n", p.version, p.scene, p.method, p.seed);
+    let smoothed = elements::smoothed_in_words(solution);
+    let mut text = format!("isolux {}: {}, {}, seed {}{smoothed}\n", p.version, p.scene, p.method, p.seed);
     for (k, object) in problem.scene.objects.iter().enumerate() {
         text += &format!("object {k} {}\n", object.name);
     }
