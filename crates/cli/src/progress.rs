@@ -190,6 +190,7 @@ mod tests {
             unshot: 0.25,
             rms_error: Some(0.0123),
             asked: None,
+            bias: None,
             excess: None,
         };
         let text = in_short(&progress, 0.5, Duration::from_secs(4));

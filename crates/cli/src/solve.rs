@@ -14,9 +14,9 @@ use crate::resume::{ResumeArguments, resume, time_left};
 use crate::summary::Summary;
 use crate::{input, terminal};
 use isolux_core::mesh::Resolution;
-use isolux_core::solvers::Solver;
 use isolux_core::solvers::deterministic;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
+use isolux_core::solvers::{Progress, Solver};
 use isolux_core::transport::Leaving;
 use isolux_core::{Accuracy, Problem};
 use isolux_io::checkpoint_file::{Checkpoint, Clock};
@@ -214,14 +214,22 @@ impl Solve {
         };
         let (solution, ended) = drive.run(solver.as_mut(), &problem, display);
         let seconds = (clock.solved + start.elapsed()).as_secs_f64();
-        let accuracy = solver.progress().asked;
+        let Progress { asked: accuracy, bias, .. } = solver.progress();
         drop(solver);
 
         let written = outputs.write(&problem, &solution, &self.picture.options(), display, interrupt)?;
         display.clear();
         let threads = rayon::current_num_threads();
-        let summary =
-            Summary { problem: &problem, solution: &solution, accuracy, ended, seconds, threads, outputs: &written };
+        let summary = Summary {
+            problem: &problem,
+            solution: &solution,
+            accuracy,
+            bias,
+            ended,
+            seconds,
+            threads,
+            outputs: &written,
+        };
         self.report(&summary)?;
         Ok(if interrupt.is_asked() { INTERRUPTED } else { 0 })
     }

@@ -32,6 +32,8 @@ pub struct Summary<'a> {
     pub solution: &'a Solution,
     /// What was asked for.
     pub accuracy: Option<Accuracy>,
+    /// Why the method is biased, if it is.
+    pub bias: Option<&'static str>,
     pub ended: Ended,
     /// Time of solving [s], without reading and writing.
     pub seconds: f64,
@@ -96,6 +98,9 @@ impl Summary<'_> {
         if self.solution.provenance.parameters.contains(&("light".to_owned(), "indirect".to_owned())) {
             let what = "irradiance is that of reflected light alone, as --light indirect asks; the balance is that of all light";
             notes.push(what.to_owned());
+        }
+        if let Some(bias) = self.bias.filter(|_| self.accuracy.is_some()) {
+            notes.push(format!("not in the error, as it is no matter of chance: {bias}"));
         }
         let escaped = self.solution.balance.escaped / self.solution.balance.emitted;
         if escaped > NOTICEABLE {

@@ -2,7 +2,7 @@
 
 use isolux_core::sampling::SequenceName;
 use isolux_core::sampling::address::Address;
-use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Survival};
+use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines};
 use isolux_core::solvers::monte_carlo::method::STOCHASTIC_JACOBI;
 use isolux_core::solvers::monte_carlo::orders::OrderName;
 use isolux_core::solvers::monte_carlo::{METHODS, Method, Settings};
@@ -71,15 +71,9 @@ pub fn with_sequences(trials: Vec<Trial>) -> impl Iterator<Item = Trial> {
     })
 }
 
-/// Whether the mean over many runs is the exact solution. It is not where light leaves with a later point of the sequence that
-/// brought it, for the points of one sequence avoid each other: the counters of elements run on over steps, and multipath sends
-/// light along one line after the other. With random numbers it is. Keller's walks end a particle's share too early, and
-/// regular power shooting is behind.
+/// Whether the mean over many runs is the exact solution, as [`Method::bias`] says.
 pub fn is_unbiased(method: &Method) -> bool {
-    let runs_on = method.address == Address::PerElement;
-    let multipath = method.order == OrderName::DEPTH_FIRST && method.lines == Lines::Global;
-    let independent = method.sequence == SequenceName::RANDOM || !(runs_on || multipath);
-    independent && method.survival != Survival::Fraction && !is_regular(method)
+    method.bias().is_none()
 }
 
 /// `settings` with another method, and elements of constant radiosity to the letter.

@@ -125,6 +125,8 @@ pub struct Progress {
     pub rms_error: Option<f64>,
     /// The accuracy that is asked for, if one is.
     pub asked: Option<Accuracy>,
+    /// Why the method is biased, if it is.
+    pub bias: Option<&'static str>,
     /// How many times as large the error is as the one that is asked for, if one is, and it is known.
     pub excess: Option<f64>,
 }

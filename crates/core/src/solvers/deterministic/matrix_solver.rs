@@ -194,6 +194,7 @@ impl Solver for MatrixSolver {
             unshot,
             rms_error: None,
             asked: None,
+            bias: None,
             excess: None,
         }
     }

@@ -183,6 +183,7 @@ impl Solver for Southwell {
             unshot,
             rms_error: None,
             asked: None,
+            bias: None,
             excess: None,
         }
     }

@@ -241,6 +241,7 @@ impl Solver for MonteCarlo {
             },
             rms_error: self.rms_error,
             asked: self.settings.budget.accuracy(),
+            bias: self.settings.method.bias(),
             excess: self.excess,
         }
     }

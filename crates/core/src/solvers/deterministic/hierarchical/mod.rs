@@ -281,6 +281,6 @@ impl Solver for Hierarchical {
     fn progress(&self) -> Progress {
         let stage = if self.stage == Stage::Refining { "refining links" } else { "gathering over links" };
         let unshot = self.unshot / self.emitted.max(f64::MIN_POSITIVE);
-        Progress { stage, rays: 0, rays_in_all: None, unshot, rms_error: None, asked: None, excess: None }
+        Progress { stage, rays: 0, rays_in_all: None, unshot, rms_error: None, asked: None, bias: None, excess: None }
     }
 }
