@@ -117,10 +117,11 @@ fn more_confidence_and_less_error_cost_more_rays() {
         let budget = Budget::Accuracy { accuracy, most_rays: None };
         solve(&problem, Settings { budget, replicates: 8, ..with_rays(1) }).work.rays
     };
-    let base = rays(0.06, 0.5);
-    assert!(rays(0.06, 0.9999) > base, "{base}");
-    let half = rays(0.03, 0.5);
-    assert!((2.5..6.0).contains(&(half as f64 / base as f64)), "{base} {half}");
+    let base = rays(0.025, 0.5);
+    assert!(rays(0.025, 0.9999) > base, "{base}");
+    // Low-discrepancy numbers converge faster than with the root of the rays.
+    let half = rays(0.0125, 0.5);
+    assert!((1.5..6.0).contains(&(half as f64 / base as f64)), "{base} {half}");
 }
 
 /// What is shown while solving: how far it is from what is asked for, and how many rays that takes.

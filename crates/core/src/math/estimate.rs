@@ -68,7 +68,7 @@ mod tests {
         assert_near(student(0.95, 1e9), 1.9602);
         assert_near(student(0.999, 1.0), 636.619);
         // Far out in the tail, as for the worst of many elements: p = 2.5e-7 on either side.
-        assert_near(student(1.0 - 5e-7, 30.0), 6.3506);
+        assert_near(student(1.0 - 5e-7, 30.0), 6.3686);
         assert_near(fisher(0.95, 1.0, 7.0), 5.5914);
         assert_near(fisher(0.95, 10.0, 70.0), 1.9689);
         assert_near(fisher(0.95, 1e6, 1e6), 1.0334);
