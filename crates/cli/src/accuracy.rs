@@ -3,10 +3,13 @@
 use crate::failure::Failure;
 use crate::numbers::{parse_share, percent};
 use isolux_core::scene::Scene;
-use isolux_core::{Accuracy, Error, Quantity};
+use isolux_core::{Accuracy, Error, Problem, Quantity, Solution};
 
 /// What a bound holds with unless said otherwise, and everywhere where nobody asks.
 pub const CONFIDENCE: f64 = 0.95;
+
+/// An error above this gets a hint how to make it smaller [1].
+const LARGE_ERROR: f64 = 0.05;
 
 #[derive(Clone, Debug, clap::Args)]
 pub struct AccuracyArguments {
@@ -76,6 +79,41 @@ fn object_called(scene: &Scene, name: &str) -> Result<u32, Failure> {
     }
 }
 
+/// The error that a solution has, beside the one that was asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Reached {
+    /// What was asked for, or else what people like to know.
+    pub accuracy: Accuracy,
+    /// At most this is the error [1]; NaN while it is unknown.
+    pub bound: f64,
+    replicates: u32,
+}
+
+impl Reached {
+    /// By `solution` of `problem`, where this was `asked`.
+    pub fn by(problem: &Problem, solution: &Solution, asked: Option<Accuracy>) -> Reached {
+        let usual = Accuracy { error: LARGE_ERROR, confidence: CONFIDENCE, of: Quantity::Rms };
+        let accuracy = asked.unwrap_or(usual);
+        let bound = accuracy.of.error_bound(problem, solution, accuracy.confidence);
+        Reached { accuracy, bound, replicates: solution.work.replicates }
+    }
+
+    /// Whether it is what was asked for, or better.
+    pub fn is_enough(&self) -> bool {
+        self.bound <= self.accuracy.error
+    }
+
+    /// A line, or nothing while the error is unknown.
+    pub fn in_words(&self, problem: &Problem) -> String {
+        if !self.bound.is_finite() {
+            return String::new();
+        }
+        let (what, confidence) =
+            (in_words(self.accuracy.of, &problem.scene), with_confidence(self.accuracy.confidence));
+        format!("Error at most {} {confidence} ({what}, {} replicates)\n", percent(self.bound), self.replicates)
+    }
+}
+
 /// `RMS over all elements`, `mean irradiance of 'Floor'`.
 pub fn in_words(of: Quantity, scene: &Scene) -> String {
     match of {
@@ -90,7 +128,7 @@ pub fn in_words(of: Quantity, scene: &Scene) -> String {
 }
 
 /// `with 95 % confidence`
-pub fn with_confidence(confidence: f64) -> String {
+fn with_confidence(confidence: f64) -> String {
     format!("with {} confidence", percent(confidence).replace(".0 %", " %"))
 }
 

@@ -90,9 +90,8 @@ fn in_words(problem: &Problem, c: &Comparison) -> String {
     if a == b {
         text += "  largest difference  none\n";
     } else {
-        let triangle = &problem.scene.triangles[problem.mesh.triangle(c.largest.element) as usize];
-        let object = terminal::harmless(&problem.scene.objects[triangle.object as usize].name);
-        let place = format!("element {} on '{object}'", c.largest.element);
+        let object = &problem.scene.objects[problem.object(c.largest.element) as usize];
+        let place = format!("element {} on '{}'", c.largest.element, terminal::harmless(&object.name));
         text += &format!("  largest difference  {} and {} lux, {place}\n", digits(a, 4), digits(b, 4));
     }
     let [a, b] = c.power;

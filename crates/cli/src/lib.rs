@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod arguments;
+mod budget;
 mod check;
 mod checkpoints;
 mod compare;
@@ -25,9 +26,11 @@ mod report;
 mod resume;
 mod scene;
 mod solve;
+mod solver;
 mod study;
 mod summary;
 mod terminal;
+mod writing;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use failure::{Failure, USAGE};

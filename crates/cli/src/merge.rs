@@ -1,12 +1,10 @@
 //! `isolux merge`: one solution of several.
 
-use crate::arguments::{PictureArguments, ThreadArguments};
+use crate::accuracy::Reached;
 use crate::failure::Failure;
-use crate::interrupt::{Interrupt, watch};
-use crate::numbers::{in_words, percent};
-use crate::output::{self, Outputs};
-use crate::progress::ProgressArguments;
-use crate::{input, terminal};
+use crate::input;
+use crate::numbers::in_words;
+use crate::writing::{Made, WritingArguments};
 use isolux_core::merge::merge;
 use isolux_core::{Problem, Solution};
 use std::path::{Path, PathBuf};
@@ -30,72 +28,40 @@ pub struct Merge {
     #[arg(required = true, num_args = 2.., value_name = "SOLUTION")]
     solutions: Vec<PathBuf>,
 
-    /// A file to write, in the format of its extension; repeat it for several
-    #[arg(short, long = "output", value_name = "OUT", required = true)]
-    outputs: Vec<PathBuf>,
-
     #[command(flatten)]
-    picture: PictureArguments,
-
-    #[command(flatten)]
-    threads: ThreadArguments,
-
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
-
-    #[command(flatten)]
-    progress: ProgressArguments,
+    writing: WritingArguments,
 }
 
 impl Merge {
     pub fn run(self) -> Result<u8, Failure> {
-        let inputs: Vec<&Path> = self.solutions.iter().map(PathBuf::as_path).collect();
-        let outputs = Outputs::open(&self.outputs, &inputs)?;
-        let pool = self.threads.pool()?;
-        let (files, quiet) = (outputs.files.clone(), self.quiet);
-        let report = watch(&files, move |interrupt| pool.install(|| self.work(&outputs, interrupt)))?;
-        if !quiet {
-            terminal::print(&report)?;
-        }
-        Ok(0)
+        let Merge { solutions: paths, writing } = self;
+        let inputs = paths.clone();
+        let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+        writing.run(&inputs, move |display| {
+            display.stage("reading the solutions");
+            let (problem, solutions) = read(&paths)?;
+            let solution = merge(&problem, &solutions)?;
+            let (rays, replicates) = (in_words(solution.work.rays as f64), solution.work.replicates);
+            let error = Reached::by(&problem, &solution, None).in_words(&problem);
+            let words = format!("{} solutions with {rays} rays and {replicates} replicates\n{error}", solutions.len());
+            Ok(Made { problem, solution, words })
+        })
     }
+}
 
-    /// Reads, merges and writes; what there is to say.
-    fn work(&self, outputs: &Outputs, interrupt: &Interrupt) -> Result<String, Failure> {
-        let mut display = self.progress.display(self.quiet);
-        display.stage("reading the solutions");
-        let (problem, solutions) = self.read()?;
-        self.picture.check_camera(&problem.scene)?;
-        let merged = merge(&problem, &solutions)?;
-        drop(solutions);
-        let written = outputs.write(&problem, &merged, &self.picture.options(), &mut display, interrupt);
-        display.clear();
-        let (rays, replicates) = (in_words(merged.work.rays as f64), merged.work.replicates);
-        let error = percent(merged.rms_error());
-        Ok(format!(
-            "{} solutions with {rays} rays and {replicates} replicates\n\
-             Estimated error {error} of the mean irradiance (RMS over all elements)\n\
-             Wrote {}\n",
-            self.solutions.len(),
-            output::in_words(&written?)
-        ))
-    }
-
-    /// The problem, and its solutions.
-    fn read(&self) -> Result<(Problem, Vec<Solution>), Failure> {
-        let first = &self.solutions[0];
-        let (problem, solution) = input::solution(first)?;
-        let mut solutions = vec![solution];
-        for path in &self.solutions[1..] {
-            let (other, solution) = input::solution(path)?;
-            if let Some(what) = problem.difference(&other) {
-                let what = format!("{}, {}: they cannot be merged: {what}", first.display(), path.display());
-                return Err(Failure::usage(what)
-                    .with_help("solve the same scene with the same --elements or --max-edge, and another --seed"));
-            }
-            solutions.push(solution);
+/// The problem, and its solutions.
+fn read(paths: &[PathBuf]) -> Result<(Problem, Vec<Solution>), Failure> {
+    let first = &paths[0];
+    let (problem, solution) = input::solution(first)?;
+    let mut solutions = vec![solution];
+    for path in &paths[1..] {
+        let (other, solution) = input::solution(path)?;
+        if let Some(what) = problem.difference(&other) {
+            let what = format!("{}, {}: they cannot be merged: {what}", first.display(), path.display());
+            return Err(Failure::usage(what)
+                .with_help("solve the same scene with the same --elements or --max-edge, and another --seed"));
         }
-        Ok((problem, solutions))
+        solutions.push(solution);
     }
+    Ok((problem, solutions))
 }

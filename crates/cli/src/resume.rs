@@ -1,19 +1,17 @@
 //! `isolux solve --checkpoint` and `--resume`: a run that is written down, and one that goes on.
 
-use crate::accuracy::AccuracyArguments;
+use crate::budget::BudgetArguments;
 use crate::checkpoints::Checkpoints;
 use crate::failure::Failure;
 use crate::input;
 use crate::numbers::parse_time;
 use crate::output::Outputs;
-use isolux_core::solvers::monte_carlo::Budget;
 use isolux_io::checkpoint_file::{Checkpoint, Clock};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// What a checkpoint decides: these options cannot be chosen again.
-const DECIDED: [&str; 9] =
-    ["scene", "UnitArguments", "elements", "max_edge", "seed", "replicates", "leaving", "light", "MethodArguments"];
+const DECIDED: [&str; 6] = ["scene", "UnitArguments", "elements", "max_edge", "SolverArguments", "MethodArguments"];
 
 /// Where a run is written down, and which one goes on.
 #[derive(Clone, Debug, clap::Args)]
@@ -67,26 +65,17 @@ impl ResumeArguments {
     }
 }
 
-/// The run in the checkpoint `file`, extended to an accuracy, to so many `rays` in all, or by so much `time`.
+/// The run in the checkpoint `file`, extended to what `more` asks for: an accuracy, so many rays in all, or so much more time.
 ///
 /// # Errors
 /// Those of the reader, and of [`Solver::go_on`](isolux_core::solvers::Solver::go_on).
-pub fn resume(
-    file: &Path,
-    accuracy: &AccuracyArguments,
-    rays: Option<u64>,
-    time: Option<Duration>,
-) -> Result<Checkpoint, Failure> {
-    let Checkpoint { problem, mut solver, mut clock } = input::checkpoint(file)?;
-    let budget = match (accuracy.accuracy(&problem.scene)?, rays, time) {
-        (Some(accuracy), most_rays, _) => Budget::Accuracy { accuracy, most_rays },
-        (None, Some(rays), _) => Budget::Rays(rays),
-        (None, None, Some(_)) => Budget::Endless,
-        (None, None, None) => return Ok(Checkpoint { problem, solver, clock }),
-    };
-    solver.go_on(&problem, budget)?;
-    clock.limit = time.map(|time| clock.solved + time);
-    Ok(Checkpoint { problem, solver, clock })
+pub fn resume(file: &Path, more: &BudgetArguments) -> Result<Checkpoint, Failure> {
+    let mut run = input::checkpoint(file)?;
+    if let Some(budget) = more.budget(&run.problem.scene)? {
+        run.solver.go_on(&run.problem, budget)?;
+        run.clock.limit = more.time.map(|time| run.clock.solved + time);
+    }
+    Ok(run)
 }
 
 /// Time that is left, if it is limited.

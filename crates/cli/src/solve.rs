@@ -1,24 +1,22 @@
 //! `isolux solve`: from a scene to a solution, in files.
 
-use crate::accuracy::AccuracyArguments;
 use crate::arguments::{PictureArguments, ThreadArguments, UnitArguments};
+use crate::budget::BudgetArguments;
 use crate::drafts::Drafts;
 use crate::drive::Drive;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
-use crate::method::MethodArguments;
 use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
 use crate::progress::{Display, ProgressArguments};
 use crate::resume::{ResumeArguments, resume, time_left};
+use crate::solver::{Chosen, SolverArguments};
 use crate::summary::Summary;
 use crate::{input, terminal};
+use isolux_core::Problem;
 use isolux_core::mesh::Resolution;
-use isolux_core::solvers::deterministic;
-use isolux_core::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
-use isolux_core::solvers::{Progress, Solver};
-use isolux_core::transport::Leaving;
-use isolux_core::{Accuracy, Problem};
+use isolux_core::solvers::Progress;
+use isolux_core::solvers::monte_carlo::Budget;
 use isolux_io::checkpoint_file::{Checkpoint, Clock};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -86,47 +84,21 @@ pub struct Solve {
     max_edge: Option<f32>,
 
     #[command(flatten)]
-    accuracy: AccuracyArguments,
-
-    /// Number of rays, like 1e6, 200k or 3M; with --error at most so many [default: by the number of elements]
-    #[arg(long, value_name = "N", value_parser = parse_count)]
-    rays: Option<u64>,
-
-    /// Time to solve, at most, like 90, 90s, 2min or 1.5h; reading and writing come on top
-    #[arg(long, value_name = "TIME", value_parser = parse_time)]
-    time: Option<Duration>,
+    budget: BudgetArguments,
 
     /// Write the files while solving, too, with so much time between: first drafts after half a second, without
     /// smoothing and with one ray a pixel. The time they take is part of that to solve
     #[arg(long, value_name = "TIME", value_parser = parse_time, requires = "outputs")]
     every: Option<Duration>,
 
-    /// Seed of the random numbers
-    #[arg(long, value_name = "S", default_value_t = Settings::default().seed)]
-    seed: u64,
-
     #[command(flatten)]
     threads: ThreadArguments,
 
-    /// Independent solutions that the error is estimated from, at least 8 [default: 16, and 8 for auto]
-    #[arg(long, value_name = "R")]
-    replicates: Option<u32>,
-
-    /// From where on an element reflected light leaves: where-landed hardly leaks under walls and behind
-    /// frames, whole-element is the radiosity system to the letter [default: where-landed]
-    #[arg(long, value_parser = parse_leaving)]
-    leaving: Option<Leaving>,
-
-    /// Which light on each element: all, or indirect, what was reflected at least once, for those who add direct light by
-    /// themselves. The balance is that of all light either way [default: all]
-    #[arg(long, value_name = "PART", value_parser = parse_light)]
-    light: Option<LightPart>,
+    #[command(flatten)]
+    solver: SolverArguments,
 
     #[command(flatten, next_help_heading = "Stop and resume")]
     resume: ResumeArguments,
-
-    #[command(flatten)]
-    method: MethodArguments,
 
     #[command(flatten)]
     picture: PictureArguments,
@@ -147,37 +119,9 @@ pub struct Solve {
     progress: ProgressArguments,
 }
 
-fn parse_leaving(text: &str) -> Result<Leaving, String> {
-    let found = Leaving::ALL.into_iter().find(|leaving| leaving.name() == text);
-    found.ok_or_else(|| format!("it is one of {}", Leaving::ALL.map(Leaving::name).join(", ")))
-}
-
-fn parse_light(text: &str) -> Result<LightPart, String> {
-    let found = LightPart::ALL.into_iter().find(|part| part.name() == text);
-    found.ok_or_else(|| format!("it is one of {}", LightPart::ALL.map(LightPart::name).join(", ")))
-}
-
 fn parse_objects(text: &str) -> Result<usize, String> {
     let number = if text == "all" { Ok(usize::MAX) } else { text.parse() };
     number.map_err(|_| "give a number or 'all'".to_owned())
-}
-
-/// A method with what it is told.
-enum Chosen {
-    MonteCarlo(Settings),
-    Deterministic(&'static deterministic::Entry, deterministic::Settings),
-}
-
-impl Chosen {
-    fn solver(&self, problem: &Problem, budget: Budget) -> Result<Box<dyn Solver>, Failure> {
-        match self {
-            Chosen::MonteCarlo(settings) => {
-                let settings = Settings { budget, ..*settings };
-                Ok(Box::new(MonteCarlo::new(problem, settings)?))
-            }
-            Chosen::Deterministic(entry, settings) => Ok((entry.make)(problem, settings)?),
-        }
-    }
 }
 
 impl Solve {
@@ -214,22 +158,14 @@ impl Solve {
         };
         let (solution, ended) = drive.run(solver.as_mut(), &problem, display);
         let seconds = (clock.solved + start.elapsed()).as_secs_f64();
-        let Progress { asked: accuracy, bias, .. } = solver.progress();
+        let Progress { asked, bias, .. } = solver.progress();
         drop(solver);
 
         let written = outputs.write(&problem, &solution, &self.picture.options(), display, interrupt)?;
         display.clear();
         let threads = rayon::current_num_threads();
-        let summary = Summary {
-            problem: &problem,
-            solution: &solution,
-            accuracy,
-            bias,
-            ended,
-            seconds,
-            threads,
-            outputs: &written,
-        };
+        let summary =
+            Summary { problem: &problem, solution: &solution, asked, bias, ended, seconds, threads, outputs: &written };
         self.report(&summary)?;
         Ok(if interrupt.is_asked() { INTERRUPTED } else { 0 })
     }
@@ -237,83 +173,31 @@ impl Solve {
     /// The run in a checkpoint, with more to do if more is asked for.
     fn resumed(&self, file: &Path, display: &mut Display) -> Result<Checkpoint, Failure> {
         display.stage("reading the checkpoint");
-        let run = resume(file, &self.accuracy, self.rays, self.time)?;
+        let run = resume(file, &self.budget)?;
         self.picture.check_camera(&run.problem.scene)?;
         Ok(run)
     }
 
     /// A run that has not begun.
     fn begun(&self, display: &mut Display) -> Result<Checkpoint, Failure> {
-        let chosen = self.chosen()?;
+        let chosen = self.solver.chosen(&self.budget)?;
         display.stage("reading the scene");
         let scene = input::scene(self.scene.as_deref().unwrap_or(Path::new("")), &self.units.options())?;
         self.picture.check_camera(&scene)?;
-        let accuracy = self.accuracy.accuracy(&scene)?;
+        let budget = self.budget.budget(&scene)?.unwrap_or(Budget::Heuristic);
         display.stage("cutting the surfaces into elements");
-        let problem = Problem::new(scene, self.resolution())?;
-        let solver = chosen.solver(&problem, self.budget(accuracy))?;
-        Ok(Checkpoint { problem, solver, clock: Clock { limit: self.time, ..Clock::default() } })
+        let problem = Problem::new(scene, self.resolution(&chosen))?;
+        let solver = chosen.solver(&problem, budget)?;
+        Ok(Checkpoint { problem, solver, clock: Clock { limit: self.budget.time, ..Clock::default() } })
     }
 
-    fn resolution(&self) -> Resolution {
+    fn resolution(&self, chosen: &Chosen) -> Resolution {
         match (self.elements, self.max_edge) {
             (Some(elements), _) => Resolution::Elements(elements),
             (None, Some(edge)) => Resolution::MaxEdge(edge),
-            (None, None) if self.method.deterministic().is_some() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
+            (None, None) if chosen.is_deterministic() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
             (None, None) => Resolution::default(),
         }
-    }
-
-    /// The method that was asked for, before there is anything to solve.
-    fn chosen(&self) -> Result<Chosen, Failure> {
-        let Some(entry) = self.method.deterministic() else { return Ok(Chosen::MonteCarlo(self.settings()?)) };
-        let asked = [
-            ("error", self.accuracy.is_asked()),
-            ("rays", self.rays.is_some()),
-            ("replicates", self.replicates.is_some()),
-            ("leaving", self.leaving.is_some()),
-        ];
-        if let Some((name, _)) = asked.into_iter().find(|(_, is_asked)| *is_asked) {
-            let what = format!("{} draws no random numbers: it has no --{name}", entry.name);
-            return Err(Failure::usage(what).with_help("leave it out; --time limits every method"));
-        }
-        if self.light == Some(LightPart::Indirect) {
-            let what = format!("{} solves for all light together: it has no --light indirect", entry.name);
-            return Err(Failure::usage(what).with_help("choose a method of Monte Carlo, like stochastic-jacobi"));
-        }
-        Ok(Chosen::Deterministic(entry, self.method.deterministic_settings(entry, self.seed)?))
-    }
-
-    /// When to stop, but for the time.
-    fn budget(&self, accuracy: Option<Accuracy>) -> Budget {
-        match (accuracy, self.rays, self.time) {
-            (Some(accuracy), most_rays, _) => Budget::Accuracy { accuracy, most_rays },
-            (None, Some(rays), _) => Budget::Rays(rays),
-            (None, None, Some(_)) => Budget::Endless,
-            (None, None, None) => Budget::Heuristic,
-        }
-    }
-
-    /// All of them but the budget, which may depend on the scene.
-    fn settings(&self) -> Result<Settings, Failure> {
-        let method = self.method.method()?;
-        if self.leaving.is_some() && !method.has_leaving() {
-            let what = format!("{} has no use for --leaving", method.name());
-            return Err(
-                Failure::usage(what).with_help("it is for light that is pooled on elements and shot along local lines")
-            );
-        }
-        let default = Settings::default();
-        let light = self.light.unwrap_or(default.light);
-        method.check_light(light)?;
-        Ok(Settings {
-            method,
-            seed: self.seed,
-            budget: default.budget,
-            replicates: self.replicates.unwrap_or(method.natural_replicates()),
-            leaving: self.leaving.unwrap_or(default.leaving),
-            light,
-        })
     }
 
     fn report(&self, summary: &Summary) -> Result<(), Failure> {

@@ -1,21 +1,18 @@
 //! What a solve came to: for people in words and tables, for programs as one JSON object.
 
-use crate::accuracy::{self, CONFIDENCE, with_confidence};
+use crate::accuracy::{self, CONFIDENCE, Reached};
 use crate::numbers::{count, decimals_for, percent, time};
 use crate::output::{self, Written};
 use crate::progress::rays_in_words;
 use crate::report::Table;
 use isolux_core::report::{ObjectSummary, per_object};
 use isolux_core::solvers::deterministic::DETERMINISTIC;
-use isolux_core::{Accuracy, Problem, Quantity, Solution};
+use isolux_core::{Accuracy, Problem, Solution};
 use isolux_io::export::json;
 use serde_json::{Map, Value, json};
 
 /// Share of the light that may be lost on the backs of surfaces, or escape, without a word [1].
 const NOTICEABLE: f64 = 0.01;
-
-/// An error above this gets a hint how to make it smaller [1].
-const LARGE_ERROR: f64 = 0.05;
 
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +28,7 @@ pub struct Summary<'a> {
     pub problem: &'a Problem,
     pub solution: &'a Solution,
     /// What was asked for.
-    pub accuracy: Option<Accuracy>,
+    pub asked: Option<Accuracy>,
     /// Why the method is biased, if it is.
     pub bias: Option<&'static str>,
     pub ended: Ended,
@@ -57,11 +54,10 @@ impl Summary<'_> {
                 percent(lost)
             ));
         }
-        if let Some(asked) = self.missed() {
-            let reached = asked.of.error_bound(self.problem, self.solution, asked.confidence);
-            let asked = percent(asked.error);
-            warnings.push(if reached.is_finite() {
-                format!("the error is {}, not {asked} as was asked for", percent(reached))
+        if let Some(Reached { accuracy, bound, .. }) = self.missed() {
+            let asked = percent(accuracy.error);
+            warnings.push(if bound.is_finite() {
+                format!("the error is {}, not {asked} as was asked for", percent(bound))
             } else {
                 format!("the error is not known yet, so it may be more than the {asked} that was asked for")
             });
@@ -78,11 +74,14 @@ impl Summary<'_> {
         warnings
     }
 
-    /// The accuracy that was asked for, if it was not reached.
-    fn missed(&self) -> Option<Accuracy> {
+    /// What was reached, if more was asked for.
+    fn missed(&self) -> Option<Reached> {
         let is_lit = self.solution.balance.emitted > 0.0;
-        let is_reached = |asked: &Accuracy| asked.excess(self.problem, self.solution) <= 1.0;
-        self.accuracy.filter(|asked| is_lit && !is_reached(asked))
+        Some(self.reached()).filter(|reached| self.asked.is_some() && is_lit && !reached.is_enough())
+    }
+
+    fn reached(&self) -> Reached {
+        Reached::by(self.problem, self.solution, self.asked)
     }
 
     fn is_deterministic(&self) -> bool {
@@ -99,7 +98,7 @@ impl Summary<'_> {
             let what = "irradiance is that of reflected light alone, as --light indirect asks; the balance is that of all light";
             notes.push(what.to_owned());
         }
-        if let Some(bias) = self.bias.filter(|_| self.accuracy.is_some()) {
+        if let Some(bias) = self.bias.filter(|_| self.asked.is_some()) {
             notes.push(format!("not in the error, as it is no matter of chance: {bias}"));
         }
         let escaped = self.solution.balance.escaped / self.solution.balance.emitted;
@@ -112,12 +111,12 @@ impl Summary<'_> {
     /// One object, without a line break at its end.
     pub fn json(&self) -> String {
         let mut extras = Map::new();
-        if let Some(asked) = self.accuracy {
-            let reached = asked.of.error_bound(self.problem, self.solution, asked.confidence);
-            let of = accuracy::in_words(asked.of, &self.problem.scene);
+        if let Some(Accuracy { error, confidence, of }) = self.asked {
+            let (of, reached) = (accuracy::in_words(of, &self.problem.scene), self.reached().bound);
             let met = self.missed().is_none();
-            let asked = json!({ "asked": asked.error, "confidence": asked.confidence, "of": of, "reached": reached, "met": met });
-            extras.insert("accuracy".into(), asked);
+            let accuracy =
+                json!({ "asked": error, "confidence": confidence, "of": of, "reached": reached, "met": met });
+            extras.insert("accuracy".into(), accuracy);
         }
         extras.insert("seconds".into(), json!(self.seconds));
         extras.insert("rays_per_second".into(), json!(self.solution.work.rays as f64 / self.seconds.max(1e-9)));
@@ -158,21 +157,17 @@ impl Summary<'_> {
     /// How accurate it is, and what more accuracy would cost.
     fn error(&self) -> String {
         let Some(certainty) = &self.solution.certainty else { return String::new() };
-        let asked = self.accuracy.unwrap_or(Accuracy { error: LARGE_ERROR, confidence: CONFIDENCE, of: Quantity::Rms });
-        let bound = asked.of.error_bound(self.problem, self.solution, asked.confidence);
-        if !bound.is_finite() {
+        let reached = self.reached();
+        if !reached.bound.is_finite() {
             return String::new();
         }
-        let (what, confidence) = (accuracy::in_words(asked.of, &self.problem.scene), with_confidence(asked.confidence));
-        let work = self.solution.work;
-        let mut text =
-            format!("Error at most {} {confidence} ({what}, {} replicates)\n", percent(bound), work.replicates);
+        let mut text = reached.in_words(self.problem);
         let margin = certainty.scene.margin(CONFIDENCE);
         let decimals = decimals_for(margin, 2);
         text += &format!("Mean irradiance {:.decimals$} ± {margin:.decimals$} lx (95 %)\n", certainty.scene.mean);
-        let next = if bound > asked.error { asked.error } else { 0.5 * bound };
-        let more = (bound / next).powi(2) - 1.0;
-        let (rays, seconds) = (round(more * work.rays as f64), time(more * self.seconds));
+        let next = if reached.is_enough() { 0.5 * reached.bound } else { reached.accuracy.error };
+        let more = (reached.bound / next).powi(2) - 1.0;
+        let (rays, seconds) = (round(more * self.solution.work.rays as f64), time(more * self.seconds));
         text + &format!("For {} it takes about {rays} more rays, {seconds}\n", percent(next))
     }
 

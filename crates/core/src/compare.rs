@@ -142,7 +142,6 @@ mod tests {
     use crate::math::Rgb;
     use crate::mesh::Resolution;
     use crate::scene::{Material, Object, Scene, Triangle, Vertex};
-    use crate::solution::{Balance, Provenance, Work};
     use glam::Vec3;
 
     /// Two triangles of 1 m² and 3 m², `rho = 1/2`, one element each.
@@ -167,21 +166,7 @@ mod tests {
                 .elements()
                 .map(move |e| Rgb::grey(if problem.mesh.triangle(e) == 0 { small[k] } else { large[k] }))
         };
-        Solution {
-            irradiance: values(0).collect(),
-            std_error: values(1).collect(),
-            certainty: None,
-            work: Work::default(),
-            balance: Balance::default(),
-            provenance: Provenance {
-                scene: String::new(),
-                scene_hash: 0,
-                method: String::new(),
-                parameters: vec![],
-                seed: 0,
-                version: String::new(),
-            },
-        }
+        Solution { irradiance: values(0).collect(), std_error: values(1).collect(), ..Solution::default() }
     }
 
     fn close(x: f64, y: f64) -> bool {

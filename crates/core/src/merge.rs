@@ -88,9 +88,10 @@ fn different_seeds(solutions: &[Solution]) -> Result<Vec<u64>, Error> {
 }
 
 fn seeds_of(solution: &Solution) -> Vec<u64> {
-    let Provenance { parameters, seed, .. } = &solution.provenance;
-    let merged = parameters.iter().find(|(name, _)| name == SEEDS);
-    merged.map_or(vec![*seed], |(_, seeds)| seeds.split(", ").filter_map(|seed| seed.parse().ok()).collect())
+    let merged = solution.provenance.parameter(SEEDS);
+    merged.map_or(vec![solution.provenance.seed], |seeds| {
+        seeds.split(", ").filter_map(|seed| seed.parse().ok()).collect()
+    })
 }
 
 /// What each solution is worth.
@@ -188,7 +189,7 @@ mod tests {
         let [a, b, c] = [5, 6, 7].map(|seed| flat(&problem, seed, 10.0, 1.0, 100));
         let ab = merge(&problem, &[a.clone(), b.clone()]).unwrap();
         let abc = merge(&problem, &[ab.clone(), c.clone()]).unwrap();
-        let seeds = |s: &Solution| s.provenance.parameters.iter().find(|(name, _)| name == SEEDS).unwrap().1.clone();
+        let seeds = |s: &Solution| s.provenance.parameter(SEEDS).unwrap().to_owned();
         assert_eq!((seeds(&ab).as_str(), seeds(&abc).as_str()), ("5, 6", "5, 6, 7"));
         // It is worth twice as much as one of its parts.
         let at_once = merge(&problem, &[a, b.clone(), c]).unwrap();

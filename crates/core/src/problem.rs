@@ -33,6 +33,11 @@ impl Problem {
         Ok(Problem { scene, mesh, geometry })
     }
 
+    /// Number of the object of the scene on which element `e` lies.
+    pub fn object(&self, e: u32) -> u32 {
+        self.scene.triangles[self.mesh.triangle(e) as usize].object
+    }
+
     /// Why solutions of this problem and of the `other` have nothing in common; `None` if they are of the same scene, cut into the same
     /// elements.
     pub fn difference(&self, other: &Problem) -> Option<&'static str> {

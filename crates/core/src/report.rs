@@ -62,7 +62,7 @@ pub fn per_object(problem: &Problem, solution: &Solution) -> Vec<ObjectSummary> 
         let irradiance = solution.irradiance[e as usize];
         let area = f64::from(mesh.area(e));
         let lux = irradiance.luminance_f64();
-        let summary = &mut summaries[scene.triangles[mesh.triangle(e) as usize].object as usize];
+        let summary = &mut summaries[problem.object(e) as usize];
         summary.elements += 1;
         summary.area += area;
         summary.min = summary.min.min(lux);
@@ -82,7 +82,6 @@ mod tests {
     use crate::math::Rgb;
     use crate::mesh::Resolution;
     use crate::scene::{Material, Object, Scene, Triangle, Vertex};
-    use crate::solution::{Balance, Provenance, Work};
     use glam::Vec3;
 
     #[test]
@@ -109,17 +108,7 @@ mod tests {
         let solution = Solution {
             irradiance: problem.mesh.elements().map(|e| Rgb::grey(lux(e))).collect(),
             std_error: vec![Rgb::BLACK; problem.mesh.len()],
-            certainty: None,
-            work: Work::default(),
-            balance: Balance::default(),
-            provenance: Provenance {
-                scene: String::new(),
-                scene_hash: 0,
-                method: String::new(),
-                parameters: vec![],
-                seed: 0,
-                version: String::new(),
-            },
+            ..Solution::default()
         };
 
         let [a, b] = per_object(&problem, &solution).try_into().unwrap();

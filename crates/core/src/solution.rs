@@ -3,11 +3,11 @@
 use crate::math::Rgb;
 use crate::{Certainty, Problem};
 
-/// Irradiance of every element with its standard error. A solution cannot be made without its provenance.
+/// Irradiance of every element with its standard error. The default is that of a scene without elements.
 ///
 /// Irradiance `E = b / rho` [lm/m² = lux] does not contain the texture and is defined where the reflectivity is zero; the
 /// radiosity is `B = Be + rho E` ([`Solution::radiosity`]).
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Solution {
     /// Irradiance [lux] per element.
     pub irradiance: Vec<Rgb>,
@@ -44,7 +44,7 @@ pub struct Balance {
 }
 
 /// Where a solution comes from: enough to compute it again, bit for bit.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Provenance {
     pub scene: String,
     /// [`crate::scene::Scene::hash`].

@@ -100,8 +100,7 @@ impl Bench {
         let known = String::from_utf8_lossy(&known).into_owned();
         let others: Vec<&str> = known.lines().skip(1).filter(|line| line.split(',').next() != Some(name)).collect();
         let Errors { weighted, unweighted, median } = reference.own(&problem.mesh);
-        let seconds = solution.provenance.parameters.iter().find(|(name, _)| name == SECONDS);
-        let seconds = seconds.map_or("", |(_, value)| value);
+        let seconds = solution.provenance.parameter(SECONDS).unwrap_or_default();
         let numbers = [weighted, unweighted, median, reference.unknown(&problem.mesh)].map(short).join(",");
         let own = format!("{name},{},{},{seconds},{numbers}", problem.mesh.len(), solution.work.rays);
         let lines = [&["reference,elements,rays,seconds,weighted,unweighted,median,unknown"][..], &others, &[&own]];

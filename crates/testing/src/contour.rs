@@ -90,7 +90,7 @@ mod tests {
         let problem = problem("box", 12);
         let halves = form_factors::<12>(&problem);
         let faces = crate::exact::box_form_factors([4.0, 3.0, 5.0]);
-        let face = |e: u32| problem.scene.triangles[problem.mesh.triangle(e) as usize].object as usize;
+        let face = |e: u32| problem.object(e) as usize;
         let mut sums = [[0.0; 6]; 6];
         for (i, row) in halves.iter().enumerate() {
             row.iter().zip(0..).for_each(|(f, j)| sums[face(i as u32)][face(j)] += 0.5 * f);

@@ -6,7 +6,6 @@ use isolux_core::math::Rgb;
 use isolux_core::math::estimate::student;
 use isolux_core::math::moments::Moments;
 use isolux_core::{Problem, Solution};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// How far the errors of independent `runs` are from those that their standard errors announce, each from the mean of
 /// `replicates` replicates. Elements of one run are lit by the same rays, so the spread of a quantity is taken between runs:
@@ -16,14 +15,13 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// - *error*: the sum by area of squared errors is that of the squared standard errors.
 pub fn of_student(problem: &Problem, runs: &[Solution], exact: &Exact, replicates: u32) -> Vec<Deviation> {
     let dof = f64::from(replicates) - 1.0;
-    let student = StudentsT::new(0.0, 1.0, dof).expect("at least two replicates");
     let mean = |run: &Solution, f: &dyn Fn(f64) -> f64| {
         let scores = scores(run, exact);
         scores.iter().map(|&t| f(t)).sum::<f64>() / scores.len() as f64
     };
     let variance = runs.iter().map(|run| mean(run, &|t| t * t)).collect();
     let tail = |p: f64| {
-        let bound = student.inverse_cdf(1.0 - 0.5 * p);
+        let bound = student(1.0 - p, dof);
         let shares = runs.iter().map(|run| mean(run, &|t| f64::from(u8::from(t.abs() > bound)))).collect();
         deviation(&format!("share beyond the {p} point"), &shares, p)
     };
@@ -53,7 +51,7 @@ pub fn of_objects(problem: &Problem, runs: &[Solution], exact: &Exact, replicate
     let mesh = &problem.mesh;
     let (mut sums, mut areas) = (vec![0.0; problem.scene.objects.len()], vec![0.0; problem.scene.objects.len()]);
     for e in mesh.elements() {
-        let object = problem.scene.triangles[mesh.triangle(e) as usize].object as usize;
+        let object = problem.object(e) as usize;
         let [r, g, b] = exact[e as usize].map(|value| value as f32);
         sums[object] += f64::from(mesh.area(e)) * Rgb::new(r, g, b).luminance_f64();
         areas[object] += f64::from(mesh.area(e));

@@ -32,7 +32,7 @@ pub fn projections(problem: &Problem, random: usize, seed: u64) -> Vec<Projectio
         let total: f64 = weights.iter().map(|w| w.abs()).sum();
         Projection { name, weights: weights.into_iter().map(|w| w / total).collect() }
     };
-    let object_of = |e: u32| problem.scene.triangles[mesh.triangle(e) as usize].object as usize;
+    let object_of = |e: u32| problem.object(e) as usize;
     let total = weighted("total".to_owned(), Box::new(|_| 1.0));
     let of_objects = problem.scene.objects.iter().enumerate().map(|(k, object)| {
         weighted(format!("object {}", object.name), Box::new(move |e| f64::from(u8::from(object_of(e) == k))))

@@ -163,7 +163,7 @@ const REPLICATES: u64 = 32;
 /// sample numbers.
 fn deviations(draw: impl Fn(Sample) -> Sample) -> Vec<f64> {
     let problem = problem("box:width=4,height=2,depth=3", 12);
-    let face = |e: u32| problem.scene.triangles[problem.mesh.triangle(e) as usize].object as usize;
+    let face = |e: u32| problem.object(e) as usize;
     let radiosity = |face: usize| (face + 1) as f32;
     let source = Source::new(&problem, |e| Rgb::grey(radiosity(face(e))));
     let mut moments = [Moments::default(); 6];

@@ -115,7 +115,7 @@ fn level(z: f32, [low, high]: [f32; 2], up: bool) -> [[f32; 3]; 4] {
 
 /// Mean irradiance of the first object in each run.
 fn of_first_object(problem: &Problem, runs: &[Vec<Rgb>]) -> Moments {
-    let is_first = |e: u32| problem.scene.triangles[problem.mesh.triangle(e) as usize].object == 0;
+    let is_first = |e: u32| problem.object(e) == 0;
     let first: Vec<u32> = problem.mesh.elements().filter(|&e| is_first(e)).collect();
     let area: f64 = first.iter().map(|&e| f64::from(problem.mesh.area(e))).sum();
     let mean =

@@ -24,7 +24,7 @@ fn matrix(problem: &Problem, name: &str, settings: Settings) -> FormFactors {
 }
 
 fn on_object(problem: &Problem, e: usize, object: u32) -> bool {
-    problem.scene.triangles[problem.mesh.triangle(e as u32) as usize].object == object
+    problem.object(e as u32) == object
 }
 
 /// `F12` of the first two objects, and its standard error if entries have one, taken as independent.

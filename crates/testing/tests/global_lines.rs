@@ -106,7 +106,7 @@ struct Seen {
 
 impl Seen {
     fn count(&mut self, problem: &Problem, span: Span) {
-        let object = |e: u32| problem.scene.triangles[problem.mesh.triangle(e) as usize].object;
+        let object = |e: u32| problem.object(e);
         let ends = elements(span).map(|end| end.map(object));
         self.first += u64::from(ends.contains(&Some(0)));
         self.both += u64::from(ends.contains(&Some(0)) && ends.contains(&Some(1)));

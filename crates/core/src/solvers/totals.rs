@@ -27,7 +27,7 @@ impl Totals {
         for e in mesh.elements() {
             let area = f64::from(mesh.area(e));
             let flux = area * irradiance(e).luminance_f64();
-            let object = scene.triangles[mesh.triangle(e) as usize].object as usize;
+            let object = problem.object(e) as usize;
             for k in [0, 1 + object] {
                 sums[k].0 += flux;
                 sums[k].1 += area;

@@ -33,26 +33,10 @@ pub use vertex_field::VertexField;
 mod tests {
     use crate::Solution;
     use crate::math::Rgb;
-    use crate::solution::{Balance, Provenance, Work};
 
     /// A solution with the given irradiance [lux] per element and no known error.
     pub fn solution(irradiance: Vec<Rgb>) -> Solution {
-        let provenance = Provenance {
-            scene: String::new(),
-            scene_hash: 0,
-            method: "made up".to_owned(),
-            parameters: Vec::new(),
-            seed: 0,
-            version: crate::VERSION.to_owned(),
-        };
         let std_error = vec![Rgb::grey(f32::NAN); irradiance.len()];
-        Solution {
-            irradiance,
-            std_error,
-            certainty: None,
-            work: Work::default(),
-            balance: Balance::default(),
-            provenance,
-        }
+        Solution { irradiance, std_error, ..Solution::default() }
     }
 }

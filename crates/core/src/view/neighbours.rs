@@ -50,12 +50,13 @@ fn around(problem: &Problem, vertices: &Vertices, e: u32, weight: &[f32], sums: 
     if weight[e as usize] <= 0.0 {
         return Vec::new();
     }
-    let object = |e: u32| problem.scene.triangles[problem.mesh.triangle(e) as usize].object;
     let mut list = Vec::with_capacity(16);
     for v in vertices.of_element(problem, e) {
         let touching = vertices.touching(v);
         if touching.len() <= HUB {
-            let near = touching.iter().filter(|&&n| n != e && weight[n as usize] > 0.0 && object(n) == object(e));
+            let near = touching
+                .iter()
+                .filter(|&&n| n != e && weight[n as usize] > 0.0 && problem.object(n) == problem.object(e));
             list.extend(near.map(|&n| (n, weight[n as usize] / (3.0 * sums[v as usize]))));
         }
     }

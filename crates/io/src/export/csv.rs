@@ -87,7 +87,7 @@ mod tests {
             assert_eq!(value("area [m²]"), problem.mesh.area(e as u32));
             let place = problem.mesh.place(e as u32);
             assert_eq!(&row[column("side")], if place.back { "back" } else { "front" });
-            let object = elements::object(&problem, e as u32) as usize;
+            let object = problem.object(e as u32) as usize;
             assert_eq!(row[column("object")], problem.scene.objects[object].name);
         }
     }

@@ -71,11 +71,6 @@ pub fn smoothed_in_words(solution: &Solution) -> String {
     how.map_or_else(String::new, |how| format!(", {SMOOTHED} {how}"))
 }
 
-/// Index of the object to which element `e` belongs.
-pub fn object(problem: &Problem, e: u32) -> u32 {
-    problem.scene.triangles[problem.mesh.triangle(e) as usize].object
-}
-
 /// sRGB colours of all elements for showing: the radiosity over a white point, clamped. The white point is the 99th
 /// percentile, by area, of the luminance of the *reflected* radiosity, so lamps do not darken the rest.
 pub fn display_colors(problem: &Problem, solution: &Solution) -> Vec<[u8; 3]> {

@@ -37,7 +37,7 @@ pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> 
     }
     let source = |e| scene.triangles[mesh.triangle(e) as usize].source;
     archive.integers("triangle", n, mesh.elements().map(source))?;
-    archive.integers("object", n, mesh.elements().map(|e| elements::object(problem, e)))?;
+    archive.integers("object", n, mesh.elements().map(|e| problem.object(e)))?;
     let back: Vec<u8> = mesh.elements().map(|e| u8::from(mesh.place(e).back)).collect();
     archive.array("back", "|b1", &[n], &back)?;
     let cut = |name: &String| name.chars().take(LONGEST_NAME).collect();

@@ -38,7 +38,7 @@ pub fn write(lit: &LitScene, _: &ExportOptions) -> Result<Vec<u8>, Error> {
             let value = (quantity.of)(problem, solution, e).to_array();
             file.extend(value.into_iter().flat_map(f32::to_le_bytes));
         }
-        file.extend(elements::object(problem, e).to_le_bytes());
+        file.extend(problem.object(e).to_le_bytes());
     }
     Ok(file)
 }
@@ -91,7 +91,7 @@ mod tests {
             let face = &faces[e as usize];
             assert_eq!(face["irradiance_g"], Property::Float(solution.irradiance[e as usize].g));
             assert_eq!(face["radiosity_b"], Property::Float(solution.radiosity(&problem, e).b));
-            assert_eq!(face["object"], Property::UInt(elements::object(&problem, e)));
+            assert_eq!(face["object"], Property::UInt(problem.object(e)));
             let Property::ListInt(corners) = &face["vertex_indices"] else { panic!("{face:?}") };
             let y = elements::corners(&problem, e).map(|p| Property::Float(p.y));
             assert!(corners.iter().zip(y).all(|(&k, y)| vertices[k as usize]["y"] == y));

@@ -33,7 +33,7 @@ pub fn write(lit: &LitScene, _: &ExportOptions) -> Result<Vec<u8>, Error> {
         let values = quantity.values(problem, solution).flat_map(|color| color.to_array());
         data += &blocks.floats(quantity.title, values);
     }
-    let objects = mesh.elements().flat_map(|e| elements::object(problem, e).to_le_bytes());
+    let objects = mesh.elements().flat_map(|e| problem.object(e).to_le_bytes());
     data += &blocks.array("Object", "UInt32", 1, objects);
 
     let xml = format!(

@@ -2,7 +2,6 @@ use super::*;
 use isolux_core::Solution;
 use isolux_core::mesh::Cut;
 use isolux_core::scene::{Material, Scene, Triangle, Vertex};
-use isolux_core::solution::{Balance, Provenance, Work};
 
 /// Two halves of a two-sided unit square with a texture of one dark texel; `light` [lux] in front and behind.
 fn square(divisions: &[u16], light: [f32; 2]) -> Vec<u8> {
@@ -19,23 +18,7 @@ fn square(divisions: &[u16], light: [f32; 2]) -> Vec<u8> {
     let problem = Problem::with_cut(scene, &Cut::regular(divisions)).unwrap();
     let light = |e| Rgb::grey(light[usize::from(problem.mesh.place(e).back)]);
     let irradiance: Vec<Rgb> = problem.mesh.elements().map(light).collect();
-    let provenance = Provenance {
-        scene: String::new(),
-        scene_hash: 0,
-        method: String::new(),
-        parameters: Vec::new(),
-        seed: 0,
-        version: String::new(),
-    };
-    let std_error = irradiance.clone();
-    let solution = Solution {
-        irradiance,
-        std_error,
-        certainty: None,
-        work: Work::default(),
-        balance: Balance::default(),
-        provenance,
-    };
+    let solution = Solution { std_error: irradiance.clone(), irradiance, ..Solution::default() };
     let options = ExportOptions { exposure: Some(-4.0), ..ExportOptions::default() };
     write(&LitScene::new(&problem, &solution), &options).unwrap()
 }
