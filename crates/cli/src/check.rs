@@ -4,7 +4,6 @@ use crate::arguments::SceneArguments;
 use crate::failure::Failure;
 use crate::interrupt::watch;
 use crate::numbers::{count, digits, percent, three_digits};
-use crate::output::OpenFiles;
 use crate::report::Table;
 use crate::{FOUND_WRONG, input, terminal};
 use isolux_core::scene::Scene;
@@ -39,7 +38,7 @@ const MOST_EMITTERS: usize = 10;
 
 impl Check {
     pub fn run(self) -> Result<u8, Failure> {
-        watch(&OpenFiles::default(), move |_| {
+        watch(move |_, _| {
             let scene = input::scene(&self.scene.scene, &self.scene.units.options())?;
             let report = check(&scene);
             let units = self.scene.units.assumed_units();

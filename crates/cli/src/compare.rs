@@ -4,7 +4,6 @@ use crate::failure::Failure;
 use crate::input;
 use crate::interrupt::watch;
 use crate::numbers::{count, decimals_for, digits, percent};
-use crate::output::OpenFiles;
 use crate::terminal;
 use isolux_core::compare::{Comparison, Means, compare};
 use isolux_core::{Error, Problem, Solution};
@@ -41,7 +40,7 @@ pub struct Compare {
 
 impl Compare {
     pub fn run(self) -> Result<u8, Failure> {
-        watch(&OpenFiles::default(), move |_| {
+        watch(move |_, _| {
             let (problem, a) = input::solution(&self.a)?;
             let (other, b) = input::solution(&self.b)?;
             let comparison = compare(&problem, &a, &other, &b).map_err(|error| {

@@ -132,13 +132,12 @@ impl Factors {
     pub fn run(self) -> Result<u8, Failure> {
         let formats: Result<Vec<_>, _> = self.outputs.iter().map(|path| for_path(path)).collect();
         let formats = formats?;
-        let files = OpenFiles::create(&self.outputs, &[&self.scene.scene])?;
         let pool = self.threads.pool()?;
-        let open = files.clone();
-        watch(&files, move |_| {
+        watch(move |_, files| {
+            files.open(&self.outputs, &[&self.scene.scene])?;
             pool.install(|| {
                 let mut display = self.progress.display(self.quiet);
-                let done = self.work(&formats, &open, &mut display);
+                let done = self.work(&formats, files, &mut display);
                 display.clear();
                 done.map(|()| 0)
             })

@@ -42,13 +42,12 @@ enum Event {
 static LISTENER: Mutex<Option<Sender<Event>>> = Mutex::new(None);
 static INSTALL: Once = Once::new();
 
-/// Does `work`, and gives what it gives unless it is interrupted for good; `files` are then dropped unfinished.
+/// Does `work`, and gives what it gives unless it is interrupted for good; the files that it has opened are then dropped unfinished.
 ///
 /// # Errors
 /// Those of `work`; a failure of code 130 if it was interrupted for good.
 pub fn watch<T: Send + 'static>(
-    files: &OpenFiles,
-    work: impl FnOnce(&Interrupt) -> Result<T, Failure> + Send + 'static,
+    work: impl FnOnce(&Interrupt, &OpenFiles) -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, Failure> {
     let (sender, events) = channel();
     *LISTENER.lock().unwrap_or_else(PoisonError::into_inner) = Some(sender.clone());
@@ -57,10 +56,11 @@ pub fn watch<T: Send + 'static>(
         let _ = install_handler();
     });
     let interrupt = Interrupt::default();
-    let for_work = interrupt.clone();
+    let files = OpenFiles::default();
+    let (for_work, files_of_work) = (interrupt.clone(), files.clone());
     let worker = std::thread::spawn(move || {
         let _tells = TellsWhenDropped(sender);
-        work(&for_work)
+        work(&for_work, &files_of_work)
     });
     let mut signals = 0;
     while let Ok(Event::Signal) = events.recv() {

@@ -7,7 +7,7 @@ use crate::numbers::in_words;
 use crate::writing::{Made, WritingArguments};
 use isolux_core::merge::merge;
 use isolux_core::{Problem, Solution};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,9 +35,7 @@ pub struct Merge {
 impl Merge {
     pub fn run(self) -> Result<u8, Failure> {
         let Merge { solutions: paths, writing } = self;
-        let inputs = paths.clone();
-        let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-        writing.run(&inputs, move |display| {
+        writing.run(paths.clone(), move |display| {
             display.stage("reading the solutions");
             let (problem, solutions) = read(&paths)?;
             let solution = merge(&problem, &solutions)?;

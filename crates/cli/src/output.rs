@@ -14,14 +14,21 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Files that are open and not yet finished; shared with whoever may have to drop them.
 #[derive(Clone, Debug, Default)]
-pub struct OpenFiles(Arc<Mutex<Vec<Option<OutputFile>>>>);
+pub struct OpenFiles(Arc<Mutex<Files>>);
+
+#[derive(Debug, Default)]
+struct Files {
+    open: Vec<Option<OutputFile>>,
+    /// No file is opened any more.
+    are_dropped: bool,
+}
 
 impl OpenFiles {
-    /// Opens a file for each of `paths`, in their order.
+    /// Opens a file for each of `paths`, in their order, and none if they were dropped already.
     ///
     /// # Errors
     /// A failure if one cannot be opened, is named twice, or is one of the `inputs`.
-    pub fn create(paths: &[PathBuf], inputs: &[&Path]) -> Result<OpenFiles, Failure> {
+    pub fn open(&self, paths: &[PathBuf], inputs: &[&Path]) -> Result<(), Failure> {
         let mut known: Vec<PathBuf> = inputs.iter().filter(|path| path.exists()).map(|path| real(path)).collect();
         let input_count = known.len();
         for path in paths {
@@ -32,11 +39,14 @@ impl OpenFiles {
             }
             known.push(real);
         }
-        let files: Result<Vec<_>, _> = paths.iter().map(|path| OutputFile::create(path).map(Some)).collect();
-        Ok(OpenFiles(Arc::new(Mutex::new(files?))))
+        let mut files = self.lock();
+        if !files.are_dropped {
+            files.open = paths.iter().map(|path| OutputFile::create(path).map(Some)).collect::<Result<_, _>>()?;
+        }
+        Ok(())
     }
 
-    fn lock(&self) -> MutexGuard<'_, Vec<Option<OutputFile>>> {
+    fn lock(&self) -> MutexGuard<'_, Files> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -45,7 +55,7 @@ impl OpenFiles {
     /// # Errors
     /// A failure if it cannot be written.
     pub fn finish(&self, k: usize, bytes: &[u8]) -> Result<(), Failure> {
-        let file = self.lock().get_mut(k).and_then(Option::take);
+        let file = self.lock().open.get_mut(k).and_then(Option::take);
         file.map_or(Ok(()), |file| file.finish(bytes).map_err(|error| Failure::after_the_work(&error)))
     }
 
@@ -56,7 +66,7 @@ impl OpenFiles {
     /// A failure if it cannot be written.
     pub fn rewrite(&self, k: usize, bytes: &[u8]) -> Result<(), Failure> {
         let mut files = self.lock();
-        let Some(slot) = files.get_mut(k) else { return Ok(()) };
+        let Some(slot) = files.open.get_mut(k) else { return Ok(()) };
         let Some(file) = slot.as_ref() else { return Ok(()) };
         let again = OutputFile::create(file.path())?;
         let file = slot.replace(again);
@@ -65,7 +75,7 @@ impl OpenFiles {
 
     /// Drops all unfinished files: older files of their names stay as they were.
     pub fn drop_all(&self) {
-        self.lock().clear();
+        *self.lock() = Files { open: Vec::new(), are_dropped: true };
     }
 }
 
@@ -80,7 +90,7 @@ fn real(path: &Path) -> PathBuf {
 /// Files that a solution is written to, each in the format of its extension.
 #[derive(Clone, Debug)]
 pub struct Outputs {
-    pub files: OpenFiles,
+    files: OpenFiles,
     list: Vec<(PathBuf, &'static Exporter)>,
 }
 
@@ -92,19 +102,20 @@ pub struct Written {
 }
 
 impl Outputs {
-    /// Opens the files.
+    /// Opens `files` at `paths`.
     ///
     /// # Errors
-    /// A failure for an extension without a format, and those of [`OpenFiles::create`].
-    pub fn open(paths: &[PathBuf], inputs: &[&Path]) -> Result<Outputs, Failure> {
-        Outputs::open_with_checkpoint(paths, None, inputs)
+    /// A failure for an extension without a format, and those of [`OpenFiles::open`].
+    pub fn open(files: &OpenFiles, paths: &[PathBuf], inputs: &[&Path]) -> Result<Outputs, Failure> {
+        Outputs::open_with_checkpoint(files, paths, None, inputs)
     }
 
-    /// Opens the files, and one for checkpoints after them.
+    /// Opens `files` at `paths`, and one for checkpoints after them.
     ///
     /// # Errors
     /// As [`Outputs::open`].
     pub fn open_with_checkpoint(
+        files: &OpenFiles,
         paths: &[PathBuf],
         checkpoint: Option<&Path>,
         inputs: &[&Path],
@@ -112,7 +123,9 @@ impl Outputs {
         let list: Result<Vec<_>, Failure> =
             paths.iter().map(|path| Ok((path.clone(), export::for_path(path)?))).collect();
         let all: Vec<PathBuf> = paths.iter().cloned().chain(checkpoint.map(Path::to_owned)).collect();
-        Ok(Outputs { list: list?, files: OpenFiles::create(&all, inputs)? })
+        let list = list?;
+        files.open(&all, inputs)?;
+        Ok(Outputs { files: files.clone(), list })
     }
 
     /// Puts `bytes` into the place of the file for checkpoints, as [`OpenFiles::rewrite`] does.

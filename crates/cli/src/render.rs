@@ -27,7 +27,7 @@ pub struct Render {
 impl Render {
     pub fn run(self) -> Result<u8, Failure> {
         let Render { solution: path, writing } = self;
-        writing.run(&[&path.clone()], move |display| {
+        writing.run(vec![path.clone()], move |display| {
             display.stage("reading the solution");
             let (problem, solution) = input::solution(&path)?;
             Ok(Made { problem, solution, words: String::new() })

@@ -44,7 +44,8 @@ impl SceneCommand {
         }
         let scene = builtin(&self.name)
             .map_err(|error| Failure::from(error).with_help("'isolux list scenes' shows names and parameters"))?;
-        let files = OpenFiles::create(std::slice::from_ref(&self.output), &[])?;
+        let files = OpenFiles::default();
+        files.open(std::slice::from_ref(&self.output), &[])?;
         let bytes = scene_glb::write(&scene).map_err(|error| Failure::after_the_work(&error))?;
         files.finish(0, &bytes)?;
         if !self.quiet {

@@ -126,11 +126,12 @@ fn parse_objects(text: &str) -> Result<usize, String> {
 
 impl Solve {
     pub fn run(self) -> Result<u8, Failure> {
-        let inputs: Vec<&Path> = self.scene.as_deref().into_iter().chain(self.resume.input()).collect();
-        let outputs = Outputs::open_with_checkpoint(&self.outputs, self.resume.file()?, &inputs)?;
         let pool = self.threads.pool()?;
-        let files = outputs.files.clone();
-        watch(&files, move |interrupt| pool.install(|| self.work(&outputs, interrupt)))
+        watch(move |interrupt, files| {
+            let inputs: Vec<&Path> = self.scene.as_deref().into_iter().chain(self.resume.input()).collect();
+            let outputs = Outputs::open_with_checkpoint(files, &self.outputs, self.resume.file()?, &inputs)?;
+            pool.install(|| self.work(&outputs, interrupt))
+        })
     }
 
     /// Reads, solves, writes and reports.

@@ -4,7 +4,6 @@ use crate::arguments::ThreadArguments;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
 use crate::numbers::time;
-use crate::output::OpenFiles;
 use crate::progress::ProgressArguments;
 use crate::report::Table;
 use crate::terminal;
@@ -64,7 +63,7 @@ impl StudyCommand {
         }
         let study = Study::named(&self.name).map_err(failure)?;
         let pool = self.threads.pool()?;
-        watch(&OpenFiles::default(), move |interrupt| pool.install(|| self.work(study, interrupt)))
+        watch(move |interrupt, _| pool.install(|| self.work(study, interrupt)))
     }
 
     fn work(&self, study: Study, interrupt: &Interrupt) -> Result<u8, Failure> {

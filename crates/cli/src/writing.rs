@@ -45,13 +45,14 @@ impl WritingArguments {
     /// Those of `make`, and failures for what cannot be written.
     pub fn run(
         self,
-        inputs: &[&Path],
+        inputs: Vec<PathBuf>,
         make: impl FnOnce(&mut Display) -> Result<Made, Failure> + Send + 'static,
     ) -> Result<u8, Failure> {
-        let outputs = Outputs::open(&self.outputs, inputs)?;
         let pool = self.threads.pool()?;
-        let (files, quiet) = (outputs.files.clone(), self.quiet);
-        let words = watch(&files, move |interrupt| {
+        let quiet = self.quiet;
+        let words = watch(move |interrupt, files| {
+            let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+            let outputs = Outputs::open(files, &self.outputs, &inputs)?;
             pool.install(|| {
                 let mut display = self.progress.display(self.quiet);
                 let Made { problem, solution, words } = make(&mut display)?;

@@ -64,7 +64,7 @@ fn solutions_of_several_seeds_are_merged() {
     };
     let [one, two, other] = [solve("1", "300"), solve("2", "300"), solve("3", "500")];
     let text = folder.prints(&["merge", &one, &two, "-o", "m.isolux", "-o", "m.json", "-o", "m.png", "--width=40"]);
-    assert!(text.contains("2 solutions") && text.contains("Estimated error") && text.contains("m.png"), "{text}");
+    assert!(text.contains("2 solutions") && text.contains("Error at most") && text.contains("m.png"), "{text}");
     let summary: serde_json::Value = serde_json::from_slice(&folder.read("m.json")).unwrap();
     assert_eq!(summary["parameters"]["merged seeds"], "1, 2");
     let error = |name: &str| {
