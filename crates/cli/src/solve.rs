@@ -15,6 +15,7 @@ use crate::summary::Summary;
 use crate::{input, terminal};
 use isolux_core::Problem;
 use isolux_core::mesh::Resolution;
+use isolux_core::scene::cut_at_contacts;
 use isolux_core::solvers::Progress;
 use isolux_core::solvers::monte_carlo::Budget;
 use isolux_io::checkpoint_file::{Checkpoint, Clock};
@@ -23,6 +24,9 @@ use std::time::{Duration, Instant};
 
 /// Elements that deterministic methods aim at unless said otherwise: their cost grows with the square.
 const DETERMINISTIC_ELEMENTS: u64 = 2000;
+
+/// Contacts that are shorter than this share of an element's edge are ignored.
+const DETAIL: f32 = 0.5;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -83,6 +87,10 @@ pub struct Solve {
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     max_edge: Option<f32>,
 
+    /// Where something stands on a surface, or passes through it: cut the surface there, so that no light passes below, or ignore it
+    #[arg(long, value_name = "WHAT", default_value = "cut")]
+    contacts: Contacts,
+
     #[command(flatten)]
     budget: BudgetArguments,
 
@@ -117,6 +125,13 @@ pub struct Solve {
 
     #[command(flatten, next_help_heading = "Report")]
     progress: ProgressArguments,
+}
+
+/// What is done where surfaces meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Contacts {
+    Cut,
+    Ignore,
 }
 
 fn parse_objects(text: &str) -> Result<usize, String> {
@@ -187,7 +202,10 @@ impl Solve {
         self.picture.check_camera(&scene)?;
         let budget = self.budget.budget(&scene)?.unwrap_or(Budget::Heuristic);
         display.stage("cutting the surfaces into elements");
-        let problem = Problem::new(scene, self.resolution(&chosen))?;
+        let resolution = self.resolution(&chosen);
+        let detail = DETAIL * resolution.typical_edge(&scene);
+        let scene = if self.contacts == Contacts::Cut { cut_at_contacts(scene, detail) } else { scene };
+        let problem = Problem::new(scene, resolution)?;
         let solver = chosen.solver(&problem, budget)?;
         Ok(Checkpoint { problem, solver, clock: Clock { limit: self.budget.time, ..Clock::default() } })
     }

@@ -2,7 +2,7 @@
 
 use super::cut::{Cut, MOST_ELEMENTS, sides};
 use super::slices::Slices;
-use super::triangle::{height, longest_edge, shortest_edge};
+use super::triangle::{height, longest_edge, shortest_edge, surface_area};
 use crate::Error;
 use crate::scene::Scene;
 use glam::{Vec2, Vec3};
@@ -31,6 +31,19 @@ impl Default for Resolution {
 const MOST_DIVISIONS: f64 = 30_000.0;
 
 impl Resolution {
+    /// About as long [m] are the edges of elements that are not smaller because their triangle is.
+    pub fn typical_edge(self, scene: &Scene) -> f32 {
+        let of_triangle = |t: u32| (surface_area(scene, t) * sides(scene, t) as f64, sides(scene, t));
+        let all = (0..scene.triangles.len() as u32).map(of_triangle);
+        let (area, least) = all.fold((0.0, 0), |sum, (area, sides)| (sum.0 + area, sum.1 + sides));
+        let elements = match self {
+            Resolution::MaxEdge(edge) => return edge,
+            Resolution::Elements(elements) => elements,
+            Resolution::Extra(more) => least.saturating_add(more),
+        };
+        (2.0 * area / elements.max(1) as f64).sqrt() as f32
+    }
+
     /// How to cut `scene`.
     ///
     /// # Errors

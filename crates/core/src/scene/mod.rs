@@ -7,6 +7,7 @@ pub mod builtin;
 mod camera;
 pub mod check;
 mod colors;
+mod contacts;
 mod image;
 mod light;
 mod material;
@@ -14,6 +15,7 @@ mod shape;
 mod validate;
 
 pub use camera::{Camera, Projection};
+pub use contacts::cut_at_contacts;
 pub use image::{Image, Texture, Wrap};
 pub use light::{Light, LightKind};
 pub use material::Material;
@@ -35,6 +37,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     pub cameras: Vec<Camera>,
     pub shape: Shape,
+    /// Edges of triangles on which other surfaces stand, as sorted pairs of vertices in ascending order: see [`cut_at_contacts`].
+    pub contacts: Vec<[u32; 2]>,
     /// What the reader assumed, ignored or dropped, one sentence each, for people.
     pub remarks: Vec<String>,
 }

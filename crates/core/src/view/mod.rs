@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! Solution --vertex_field--> VertexField --picture--> Picture (cd/m², and tone-mapped for a screen)
-//!    weld, crease: which element corners are one vertex        camera_rays, default_view: where from
+//!    weld, crease, contacts: which corners are one vertex      camera_rays, default_view: where from
 //!    neighbours, smooth: noise taken out (of tables, too)      surface_light, tone: what is seen there
 //!    cover, seams: what the value of a vertex is
 //! ```
 
 pub mod camera_rays;
+mod contacts;
 mod cover;
 mod crease;
 mod default_view;

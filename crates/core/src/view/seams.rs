@@ -5,11 +5,12 @@
 //! value that the longer piece of edge has where it lies ([`t_vertices`]). And a program that draws triangles leaves pinholes
 //! along such an edge, whatever the angle, unless both sides have the same vertices there ([`EdgePoints`]).
 
+use super::contacts::Contacts;
 use super::crease::CREASE_ANGLE;
 use super::grid::{self, Side};
 use super::vertices::{Vertices, WELD_TOLERANCE, group_by};
 use crate::Problem;
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Vec2, Vec3};
 
 /// A vertex that takes the value `(1 - t) value[from] + t value[to]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +24,9 @@ pub struct TVertex {
 /// All T-vertices on smooth surfaces, in an order in which every one comes after those it depends on.
 pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
     let sides = vertices.grid.sides(&problem.mesh);
-    let pieces = loose_pieces(problem, vertices, sides, |vertex| vertex);
+    let contacts = Contacts::new(problem);
+    let is_open = |side: Side, ends| !contacts.divide_along(side.triangle(&problem.mesh), ends);
+    let pieces = loose_pieces(problem, vertices, sides, is_open, |vertex| vertex);
     let mut found: Vec<(f32, TVertex)> = Vec::new();
     visit_crossings(
         problem,
@@ -53,7 +56,7 @@ pub struct EdgePoints {
 impl EdgePoints {
     pub fn new(problem: &Problem, vertices: &Vertices) -> EdgePoints {
         let fronts = vertices.grid.sides(&problem.mesh).filter(|side| !side.back);
-        let pieces = loose_pieces(problem, vertices, fronts, |vertex| vertices.place(vertex));
+        let pieces = loose_pieces(problem, vertices, fronts, |_, _| true, |vertex| vertices.place(vertex));
         let mut points = Vec::new();
         let position = |place: u32| vertices.positions()[place as usize];
         visit_crossings(problem, &pieces, position, |piece, end, t| points.push((piece.from, piece.to, t, end.key)));
@@ -93,21 +96,26 @@ struct End {
     longest: f32,
 }
 
-/// Pieces of edges that belong to one side only: borders, creases, and edges between different divisions.
+/// Pieces of edges that belong to one side only: borders, creases, and edges between different divisions. Those `of_interest`, by their ends on
+/// the triangle.
 fn loose_pieces(
     problem: &Problem,
     vertices: &Vertices,
     sides: impl Iterator<Item = Side>,
+    of_interest: impl Fn(Side, [Vec2; 2]) -> bool,
     key: impl Fn(u32) -> u32,
 ) -> Vec<Piece> {
     let mesh = &problem.mesh;
     let mut pieces = Vec::new();
     for side in sides {
         for ends in grid::border(mesh.divisions(side.patch)) {
+            let on_triangle = ends.map(|ij| grid::on_triangle(mesh, side.patch, ij));
+            if !of_interest(side, on_triangle) {
+                continue;
+            }
             let [a, b] = ends.map(|ij| vertices.of_grid_point(vertices.grid.number(mesh, side, ij)));
             let length = vertices.position(a).distance(vertices.position(b));
-            let uv = grid::on_triangle(mesh, side.patch, ends[0]);
-            let front = problem.geometry.surface(side.triangle(mesh), uv).1;
+            let front = problem.geometry.surface(side.triangle(mesh), on_triangle[0]).1;
             let normal = if side.back { -front } else { front };
             pieces.push(Piece { from: key(a).min(key(b)), to: key(a).max(key(b)), normal, length });
         }

@@ -1,5 +1,6 @@
 //! The vertices of the lit surface: grid points that are the same place on the same smooth surface, made one.
 
+use super::contacts::Contacts;
 use super::crease;
 use super::grid::{self, Grid};
 use super::weld::Weld;
@@ -30,7 +31,8 @@ impl Vertices {
         let mesh = &problem.mesh;
         let grid = Grid::new(mesh);
         let (place_of_grid_point, normals, positions) = places(problem, &grid);
-        let (of_grid_point, places) = split_at_creases(&place_of_grid_point, &normals, positions.len());
+        let (mut of_grid_point, mut places) = split_at_creases(&place_of_grid_point, &normals, positions.len());
+        Contacts::new(problem).divide(problem, &grid, &place_of_grid_point, &mut of_grid_point, &mut places);
         let of_element = |e: u32| grid.corners_of_element(mesh, e).map(|g| of_grid_point[g]);
         let (first, touching) = group_by(places.len(), 3 * mesh.len(), |k| of_element(k as u32 / 3)[k % 3]);
         let touching = touching.into_iter().map(|k| (k / 3) as u32).collect();

@@ -1,0 +1,133 @@
+//! The segments in which other triangles touch or cross a triangle.
+
+use super::Plane;
+use super::near::Near;
+use crate::scene::Scene;
+use glam::DVec2;
+
+/// Cosine of the angle from which surfaces that meet do not run smoothly into each other: 36 degrees, as in pictures.
+const CREASE: f64 = 0.809;
+
+/// Where a triangle is touched.
+#[derive(Debug)]
+pub struct Contacts {
+    /// Segments inside of it, end points not shared exactly [m].
+    pub inner: Vec<[DVec2; 2]>,
+    /// Whether something stands on each of its edges, all along.
+    pub borders: [bool; 3],
+}
+
+impl Contacts {
+    /// Contacts of triangle `t`, which lies in `plane`. Groups of segments that hang together count if they reach over `detail` [m].
+    pub fn of(scene: &Scene, t: u32, plane: &Plane, near: &Near, tolerance: f64, detail: f64) -> Contacts {
+        let (mut inner, mut on_edges) = (Vec::new(), [const { Vec::new() }; 3]);
+        let two_sided = scene.material_of(t).two_sided;
+        for other in near.of(t) {
+            let corners = scene.corners(other).map(|corner| corner.as_dvec3());
+            let heights = corners.map(|corner| plane.height(corner));
+            // What stands behind a one-sided surface is out of sight.
+            if !two_sided && heights.iter().all(|&height| height <= tolerance) {
+                continue;
+            }
+            let Some(segment) = meeting(heights, corners.map(|corner| plane.flat(corner)), tolerance) else { continue };
+            let Some(segment) = clipped(plane, segment, tolerance).filter(|[p, q]| p.distance(*q) > 4.0 * tolerance)
+            else {
+                continue;
+            };
+            match edge_along(plane, segment, 2.0 * tolerance) {
+                None => inner.push(segment),
+                Some(k) => {
+                    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+                    if normal.dot(plane.normal).abs() < CREASE {
+                        on_edges[k].push(segment);
+                    }
+                }
+            }
+        }
+        let inner = large_groups(inner, 4.0 * tolerance, detail);
+        let borders = [0, 1, 2].map(|k| is_covered(plane.edge(k), &on_edges[k], 8.0 * tolerance));
+        Contacts { inner, borders }
+    }
+}
+
+/// Where a triangle with these `heights` above the plane and `flat` positions meets it: an edge that lies in it, or a cut across.
+fn meeting(heights: [f64; 3], flat: [DVec2; 3], tolerance: f64) -> Option<[DVec2; 2]> {
+    let is_on = heights.map(|height| height.abs() <= tolerance);
+    let mut ends: Vec<DVec2> = (0..3).filter(|&k| is_on[k]).map(|k| flat[k]).collect();
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        if !is_on[k] && !is_on[next] && (heights[k] > 0.0) != (heights[next] > 0.0) {
+            ends.push(flat[k].lerp(flat[next], heights[k] / (heights[k] - heights[next])));
+        }
+    }
+    ends.try_into().ok()
+}
+
+/// The part of a segment that lies on the triangle of `plane`, or hardly beyond its borders: many lie along them.
+fn clipped(plane: &Plane, [p, q]: [DVec2; 2], tolerance: f64) -> Option<[DVec2; 2]> {
+    let (mut from, mut to) = (0.0f64, 1.0f64);
+    for [a, b] in (0..3).map(|k| plane.edge(k)) {
+        let inside = |point: DVec2| (b - a).normalize_or_zero().perp_dot(point - a);
+        let (start, end) = (inside(p), inside(q));
+        match (start < -tolerance, end < -tolerance) {
+            _ if start.max(end) < -tolerance => return None,
+            (true, _) => from = from.max(start / (start - end)),
+            (_, true) => to = to.min(start / (start - end)),
+            (false, false) => {}
+        }
+    }
+    (from < to).then(|| [p.lerp(q, from), p.lerp(q, to)])
+}
+
+/// The edge of the triangle of `plane` along which a segment lies, if it does.
+fn edge_along(plane: &Plane, segment: [DVec2; 2], tolerance: f64) -> Option<usize> {
+    (0..3).find(|&k| {
+        let [a, b] = plane.edge(k);
+        let across = (b - a).normalize_or_zero().perp();
+        segment.iter().all(|point| (*point - a).dot(across).abs() <= tolerance)
+    })
+}
+
+/// The segments of groups that hang together and reach over `detail`.
+fn large_groups(segments: Vec<[DVec2; 2]>, tolerance: f64, detail: f64) -> Vec<[DVec2; 2]> {
+    let mut group: Vec<usize> = (0..segments.len()).collect();
+    let mut ends: Vec<(DVec2, usize)> = (0..).zip(&segments).flat_map(|(k, s)| s.map(|end| (end, k))).collect();
+    ends.sort_by(|(p, _), (q, _)| p.x.total_cmp(&q.x));
+    for (k, (p, mine)) in ends.iter().enumerate() {
+        for (_, other) in ends[k + 1..]
+            .iter()
+            .take_while(|(q, _)| q.x - p.x <= tolerance)
+            .filter(|(q, _)| p.distance(*q) <= tolerance)
+        {
+            let (mine, other) = (root(&group, *mine), root(&group, *other));
+            group[mine.max(other)] = mine.min(other);
+        }
+    }
+    let mut boxes = vec![(DVec2::INFINITY, DVec2::NEG_INFINITY); segments.len()];
+    for (k, [p, q]) in segments.iter().enumerate() {
+        let (low, high) = &mut boxes[root(&group, k)];
+        (*low, *high) = (low.min(*p).min(*q), high.max(*p).max(*q));
+    }
+    let is_large = |k: usize| {
+        let (low, high) = boxes[root(&group, k)];
+        low.distance(high) > detail
+    };
+    segments.iter().enumerate().filter(|(k, _)| is_large(*k)).map(|(_, segment)| *segment).collect()
+}
+
+fn root(group: &[usize], mut k: usize) -> usize {
+    while group[k] != k {
+        k = group[k];
+    }
+    k
+}
+
+/// Whether `segments` along an edge leave no gap longer than `tolerance` on it.
+fn is_covered([a, b]: [DVec2; 2], segments: &[[DVec2; 2]], tolerance: f64) -> bool {
+    let (along, length) = ((b - a).normalize_or_zero(), a.distance(b));
+    let place = |point: DVec2| (point - a).dot(along);
+    let mut spans: Vec<(f64, f64)> = segments.iter().map(|s| s.map(place)).map(|[p, q]| (p.min(q), p.max(q))).collect();
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let covered = spans.iter().try_fold(0.0f64, |end, &(from, to)| (from <= end + tolerance).then(|| end.max(to)));
+    covered.is_some_and(|end| end >= length - tolerance)
+}
