@@ -49,6 +49,7 @@ pub fn merge(problem: &Problem, solutions: &[Solution]) -> Result<Solution, Erro
         },
         balance: parts().fold(Balance::default(), |sum, (part, w)| sum + part.balance / (1.0 / w)),
         provenance: provenance(first, &seeds),
+        groups: Vec::new(),
     })
 }
 
@@ -153,6 +154,7 @@ mod tests {
                 seed,
                 version: crate::VERSION.to_owned(),
             },
+            groups: Vec::new(),
         }
     }
 

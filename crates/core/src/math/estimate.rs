@@ -43,6 +43,21 @@ impl Estimate {
     }
 }
 
+/// The sum of both, which are independent.
+impl std::ops::Add for Estimate {
+    type Output = Estimate;
+    fn add(self, other: Estimate) -> Estimate {
+        self.merged(other, 0.5) * 2.0
+    }
+}
+
+impl std::ops::Mul<f64> for Estimate {
+    type Output = Estimate;
+    fn mul(self, k: f64) -> Estimate {
+        Estimate { mean: self.mean * k, variance: self.variance * k * k, freedom: self.freedom }
+    }
+}
+
 /// Student's t with so much `freedom` is within plus or minus this with probability `confidence`; NaN without freedom.
 pub fn student(confidence: f64, freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom.min(MANY)).map_or(f64::NAN, |t| -t.inverse_cdf(0.5 - 0.5 * confidence))
@@ -89,6 +104,8 @@ mod tests {
         assert_eq!(two, Estimate { mean: 3.0, variance: 0.5, freedom: 14.0 });
         let exact = Estimate { variance: 0.0, ..one };
         assert_eq!(exact.merged(exact, 0.25), Estimate { freedom: 14.0, ..exact });
+        assert_eq!(one + Estimate { mean: 4.0, ..one }, Estimate { mean: 6.0, variance: 2.0, freedom: 14.0 });
+        assert_eq!(one * 3.0, Estimate { mean: 6.0, variance: 9.0, freedom: 7.0 });
         // Whoever has no weight changes nothing.
         assert_eq!(one.merged(Estimate { mean: 9.0, variance: 5.0, freedom: 1.0 }, 0.0), one);
     }
