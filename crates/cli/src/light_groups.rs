@@ -35,11 +35,10 @@ pub fn table(problem: &Problem, solution: &Solution) -> String {
     if solution.groups.is_empty() {
         return String::new();
     }
-    let alone: Vec<Solution> =
-        (0..solution.groups.len()).map(|k| superposition::alone(problem, solution, k)).collect();
+    let alone: Vec<Solution> = (0..solution.groups.len()).map(|k| superposition::alone(problem, solution, k)).collect();
     let means: Vec<f64> = alone.iter().map(|alone| mean(problem, alone)).collect();
     let lumens = decimals_for(solution.balance.emitted, 4);
-    let lux = decimals_for(means.iter().sum(), 4);
+    let lux = decimals_for(means.iter().sum::<f64>() / means.len() as f64, 4);
     let is_mixed = solution.groups.iter().any(|part| part.factor != Rgb::WHITE);
     let mut heads = vec!["light group", "factor", "emitted [lm]", "mean [lux]", "± 95 %", "error at most"];
     heads.retain(|head| is_mixed || *head != "factor");

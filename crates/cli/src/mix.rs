@@ -159,7 +159,8 @@ mod tests {
 
     #[test]
     fn what_is_no_factor_is_refused() {
-        for text in ["", "a", "a=", "a=-1", "a=nan", "a=1e99", "a=#fff", "a=#gggggg", "a=1,2", "a=1*2", "a=#ffé11", "a=#+12345"]
+        for text in
+            ["", "a", "a=", "a=-1", "a=nan", "a=1e99", "a=#fff", "a=#gggggg", "a=1,2", "a=1*2", "a=#ffé11", "a=#+12345"]
         {
             assert!(parse_setting(text).is_err(), "{text}");
         }

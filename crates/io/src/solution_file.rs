@@ -122,8 +122,7 @@ mod tests {
     fn lit_by_groups() -> (Problem, Solution) {
         let (problem, solution) = fixture::lit_box();
         let groups = Grouping::Objects.groups(&problem.scene).unwrap();
-        let part =
-            |group| GroupLight { group, flux: [1.0, 2.0, 3.0], factor: Rgb::WHITE, solution: solution.clone() };
+        let part = |group| GroupLight { group, flux: [1.0, 2.0, 3.0], factor: Rgb::WHITE, solution: solution.clone() };
         let groups = groups.into_iter().map(part).collect();
         (problem, Solution { groups, ..solution })
     }
