@@ -87,7 +87,7 @@ fn parse_color(text: &str) -> Option<Rgb> {
 impl Mix {
     pub fn run(self) -> Result<u8, Failure> {
         let Mix { solution: path, settings, writing } = self;
-        writing.run(&[&path.clone()], move |display| {
+        writing.run(vec![path.clone()], move |display| {
             display.stage("reading the solution");
             let (problem, solution) = input::solution(&path)?;
             let factors = factors(&path, &solution.groups, &settings)?;

@@ -69,9 +69,13 @@ fn lists_put_lamps_together_and_runs_go_on() {
     assert!(number(&more["rays"]) >= 8e5 && number(&more["rays"]) < 1e6, "{}", more["rays"]);
     assert!(more["parameters"]["extended from"].as_str().unwrap().contains("400000"));
     assert!(folder.prints(&["mix", "b.isolux"]).contains("evening"));
-    // Merged solutions are sums.
+    // Merged solutions have the groups merged.
     office(&folder, &["--light-groups", "day=window*;evening=desk lamp*, pendant*", "--seed", "2", "-o", "c.isolux"]);
-    folder.prints(&["merge", "a.isolux", "c.isolux", "-o", "merged.json"]);
+    folder.prints(&["merge", "a.isolux", "c.isolux", "-o", "merged.isolux", "-o", "merged.csv"]);
+    let mixed = folder.prints(&["mix", "merged.isolux", "-o", "mixed.csv"]);
+    assert!(mixed.contains("evening") && folder.read("mixed.csv") == folder.read("merged.csv"));
+    office(&folder, &["--light-groups", "objects", "--seed", "3", "-o", "d.isolux"]);
+    assert!(folder.fails(2, &["merge", "a.isolux", "d.isolux", "-o", "e.csv"]).contains("number 2"));
 }
 
 #[test]

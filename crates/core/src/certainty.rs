@@ -99,10 +99,10 @@ impl Certainty {
     /// Of the sum of two solutions that are independent: the light of two lamps.
     pub fn plus(&self, other: &Certainty) -> Certainty {
         let square = |of: &Certainty| Estimate { mean: 0.0, variance: of.mean_square, freedom: of.freedom };
-        let sum = square(self) + square(other);
+        let sum = square(self).plus(square(other));
         Certainty {
-            scene: self.scene + other.scene,
-            objects: self.objects.iter().zip(&other.objects).map(|(a, b)| *a + *b).collect(),
+            scene: self.scene.plus(other.scene),
+            objects: self.objects.iter().zip(&other.objects).map(|(a, b)| a.plus(*b)).collect(),
             mean_square: sum.variance,
             freedom: sum.freedom,
             ways: self.ways.summed(other.ways, [self.mean_square, other.mean_square]),

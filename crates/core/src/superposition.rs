@@ -67,11 +67,11 @@ fn certainty(problem: &Problem, part: &GroupLight) -> Option<Certainty> {
             square[k] += area * (std_error[e as usize] * factor).luminance_f64().powi(2);
         }
     }
-    let times = |[before, after]: [f64; 2]| ratio(after, before);
+    let change = |[before, after]: [f64; 2]| ratio(after, before);
     Some(Certainty {
-        scene: known.scene * times(flux[0]),
-        objects: known.objects.iter().zip(&flux[1..]).map(|(object, &flux)| *object * times(flux)).collect(),
-        mean_square: known.mean_square * times(square),
+        scene: known.scene.times(change(flux[0])),
+        objects: known.objects.iter().zip(&flux[1..]).map(|(object, &flux)| object.times(change(flux))).collect(),
+        mean_square: known.mean_square * change(square),
         freedom: known.freedom,
         ways: known.ways,
     })

@@ -4,6 +4,7 @@
 
 use glam::Vec3;
 use isolux_core::math::Rgb;
+use isolux_core::merge::merge;
 use isolux_core::run::run;
 use isolux_core::scene::{Grouping, Light, LightKind, Scene};
 use isolux_core::solution::GroupLight;
@@ -178,6 +179,20 @@ fn a_mixture_with_all_factors_one_is_what_was_stored_bit_for_bit() {
     // What was switched off is switched on again.
     let (_, again) = remixed(&mixed_problem, &mixed, &[Rgb::WHITE; 5]);
     assert!(again == solution);
+}
+
+#[test]
+fn groups_are_merged_one_by_one() {
+    let problem = sphere();
+    let [a, b] = [1, 2].map(|seed| solve_apart(&problem, Settings { seed, ..constant_elements(30_000) }));
+    let merged = merge(&problem, &[a.clone(), b.clone()]).unwrap();
+    assert!(remixed(&problem, &merged, &[Rgb::WHITE; 5]).1 == merged);
+    // To rounding the same as the sums merged.
+    let sums = [a, b].map(|solution| Solution { groups: Vec::new(), ..solution });
+    let of_sums = merge(&problem, &sums).unwrap();
+    assert!(difference(&merged, &of_sums) < 1e-6 && merged.work == of_sums.work);
+    let error = |solution: &Solution| solution.certainty.as_ref().unwrap().scene.std_error();
+    assert!((error(&merged) / error(&of_sums) - 1.0).abs() < 1e-3, "{} {}", error(&merged), error(&of_sums));
 }
 
 #[test]
