@@ -44,7 +44,7 @@ Examples:
   isolux solve room.glb -o lit.glb -o lit.isolux  a lit model for any viewer, and the solution
   isolux render lit.isolux -o view.png            another picture, without solving again
   isolux merge a.isolux b.isolux -o both.isolux   one better solution of two seeds
-  isolux mix lit.isolux --set 'Lamp 1=0.3' -o a.png  lamps dimmed, if they were solved apart (--light-groups)
+  isolux mix lit.isolux --set Lamp=0.3 -o dim.png lamps dimmed, after solve --light-groups
   isolux check room.glb                           what is in a file, and what is wrong with it
   isolux list                                     built-in scenes, formats, methods
 

@@ -18,8 +18,10 @@
 //!
 //! Cost: the rays of one solve; memory for the state of each group's solver, and for one copy of the elements.
 
-use super::monte_carlo::{Budget, extended_from, rays_for};
-use super::{Part, Progress, Solver, budget};
+mod rounds;
+
+use super::monte_carlo::{Budget, extended_from};
+use super::{Part, Progress, Solver};
 use crate::math::Rgb;
 use crate::math::hash::derive;
 use crate::scene::{Grouping, LightGroup, MOST_GROUPS};
@@ -30,8 +32,6 @@ use std::sync::OnceLock;
 
 /// Parameters that say how much one group was told to do.
 const AMOUNT: [&str; 3] = ["rays", "rounds", "extended from"];
-/// Least rays of a group's first round, where an accuracy is asked for.
-const FIRST_RAYS: f64 = 8000.0;
 
 /// The solver's state: a checkpoint, as it is.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -107,7 +107,7 @@ impl LightGroups {
             let of_flux = luminous(flux) / all.max(f64::MIN_POSITIVE);
             let share = 0.5 * (of_flux + 1.0 / groups.len() as f64);
             view.light_only(problem, &groups, k);
-            let solver = make(&view, first_budget(problem, budget, share), derive(seed, k as u64))?;
+            let solver = make(&view, rounds::first_budget(problem, budget, share), derive(seed, k as u64))?;
             members.push(Member { flux, share, solver });
         }
         let mut solver = LightGroups {
@@ -132,7 +132,7 @@ impl LightGroups {
     /// After a step. A turn lasts for as many rays as there are elements, so that what it costs to change does not count.
     fn end_step(&mut self, problem: &Problem) {
         let member = &self.members[self.turn];
-        let is_over = member.rays() - self.rays_before >= problem.mesh.len() as u64;
+        let is_over = member.rays().saturating_sub(self.rays_before) >= problem.mesh.len() as u64;
         if is_over || member.is_finished() {
             self.give_turn(problem);
         }
@@ -151,40 +151,6 @@ impl LightGroups {
             Some(view) => view.light_only(problem, &self.groups, next),
             None => self.view = view_of(problem, &self.groups, next).into(),
         }
-    }
-
-    /// After all groups have finished: more rays for all of them, if the sum is not as accurate as was asked for.
-    fn next_round(&mut self, problem: &Problem) {
-        let Budget::Accuracy { accuracy, most_rays } = self.budget else { return };
-        let (rays, excess) = (self.rays(), accuracy.excess(problem, &self.solution(problem)));
-        let left = most_rays.map_or(u64::MAX, |most| most.saturating_sub(rays));
-        self.excess = Some(excess);
-        let is_accurate = excess <= 1.0;
-        // A round that adds next to nothing is not worth its cost.
-        if !is_accurate && left > rays / 100 {
-            // A group that cannot go on stays as it is.
-            let _ = self.add_rays(problem, rays_for(rays, excess).min(left));
-        }
-    }
-
-    /// Extends all groups by their shares of so many rays.
-    fn add_rays(&mut self, problem: &Problem, rays: u64) -> Result<(), Error> {
-        self.extend(problem, |member| {
-            let Progress { rays: traced, rays_in_all, .. } = member.solver.progress();
-            Budget::Rays(traced.max(rays_in_all.unwrap_or(0)) + member.part_of(rays))
-        })
-    }
-
-    /// Extends each group to a budget.
-    fn extend(&mut self, problem: &Problem, budget: impl Fn(&Member) -> Budget) -> Result<(), Error> {
-        let mut view = problem.clone();
-        for (k, member) in self.members.iter_mut().enumerate() {
-            view.light_only(problem, &self.groups, k);
-            let budget = budget(member);
-            member.solver.go_on(&view, budget)?;
-        }
-        self.give_turn(problem);
-        Ok(())
     }
 
     /// That of the first group, but for what concerns all of them.
@@ -206,20 +172,6 @@ fn view_of(problem: &Problem, groups: &[LightGroup], k: usize) -> Problem {
     let mut view = problem.clone();
     view.light_only(problem, groups, k);
     view
-}
-
-/// What one group is asked for first, of a budget for all of them.
-fn first_budget(problem: &Problem, asked: Budget, share: f64) -> Budget {
-    let rays = |rays: f64| Budget::Rays((share * rays).ceil() as u64);
-    match asked {
-        Budget::Heuristic => rays(budget::rays(&problem.mesh) as f64),
-        Budget::Rays(all) => rays(all as f64),
-        Budget::Endless => Budget::Endless,
-        Budget::Accuracy { most_rays, .. } => {
-            let first = (4.0 * problem.mesh.len() as f64).max(FIRST_RAYS / share);
-            rays(most_rays.map_or(first, |most| first.min(most as f64)))
-        }
-    }
 }
 
 #[typetag::serde]
@@ -256,22 +208,7 @@ impl Solver for LightGroups {
     }
 
     fn go_on(&mut self, problem: &Problem, budget: Budget) -> Result<(), Error> {
-        if budget == Budget::Heuristic || budget == self.budget {
-            return Ok(());
-        }
-        match budget {
-            Budget::Heuristic | Budget::Endless => self.extend(problem, |_| budget)?,
-            Budget::Rays(rays) => self.extend(problem, |member| Budget::Rays(member.part_of(rays)))?,
-            // Groups without an end need one, where the accuracy is looked at.
-            Budget::Accuracy { .. } if self.budget == Budget::Endless => self.add_rays(problem, self.rays() / 4)?,
-            Budget::Accuracy { .. } => {}
-        }
-        self.asked.push(std::mem::replace(&mut self.budget, budget));
-        self.excess = None;
-        if self.step().is_none() {
-            self.next_round(problem);
-        }
-        Ok(())
+        self.extend(problem, budget)
     }
 
     fn fits(&self, problem: &Problem) -> bool {
@@ -289,7 +226,7 @@ impl Solver for LightGroups {
         let lumens: f64 = all.iter().map(|(lumens, _)| lumens).sum();
         // As if all groups lit the scene as well as they emit.
         let square = |(lumens, progress): &(f64, Progress)| Some((lumens * progress.rms_error?).powi(2));
-        let squares: Option<f64> = all.iter().map(square).sum();
+        let squares: Option<f64> = all.iter().filter(|(lumens, _)| *lumens > 0.0).map(square).sum();
         let (_, running) = all[self.turn];
         Progress {
             rays: all.iter().map(|(_, progress)| progress.rays).sum(),
