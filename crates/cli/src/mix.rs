@@ -79,7 +79,9 @@ fn parse_factor(text: &str) -> Option<Rgb> {
 
 /// Linear value of `#rrggbb`.
 fn parse_color(text: &str) -> Option<Rgb> {
-    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
+    let digits = text
+        .strip_prefix('#')
+        .filter(|digits| digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit()))?;
     let [_, r, g, b] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
     Some(Rgb::from_srgb8([r, g, b]))
 }
