@@ -15,9 +15,11 @@ mod factors;
 mod failure;
 mod input;
 mod interrupt;
+mod light_groups;
 mod list;
 mod merge;
 mod method;
+mod mix;
 mod numbers;
 mod output;
 mod progress;
@@ -42,6 +44,7 @@ Examples:
   isolux solve room.glb -o lit.glb -o lit.isolux  a lit model for any viewer, and the solution
   isolux render lit.isolux -o view.png            another picture, without solving again
   isolux merge a.isolux b.isolux -o both.isolux   one better solution of two seeds
+  isolux mix lit.isolux --set Lamp=0.3 -o dim.png lamps dimmed, after solve --light-groups
   isolux check room.glb                           what is in a file, and what is wrong with it
   isolux list                                     built-in scenes, formats, methods
 
@@ -69,6 +72,7 @@ enum Command {
     Check(check::Check),
     Compare(compare::Compare),
     Merge(merge::Merge),
+    Mix(mix::Mix),
     Scene(scene::SceneCommand),
     Factors(factors::Factors),
     Study(study::StudyCommand),
@@ -96,6 +100,7 @@ fn execute(command: Option<Command>) -> Result<u8, Failure> {
         Some(Command::Check(check)) => check.run(),
         Some(Command::Compare(compare)) => compare.run(),
         Some(Command::Merge(merge)) => merge.run(),
+        Some(Command::Mix(mix)) => mix.run(),
         Some(Command::Scene(scene)) => scene.run(),
         Some(Command::Factors(factors)) => factors.run(),
         Some(Command::Study(study)) => study.run(),

@@ -1,6 +1,8 @@
 //! Tables for people: text on the left, numbers on the right, in columns that line up.
 
+use crate::numbers::decimals_for;
 use crate::terminal::harmless;
+use isolux_core::solution::Balance;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// The longest name that is shown in full [columns].
@@ -40,6 +42,29 @@ impl Table {
         }
         text
     }
+}
+
+/// Where the light went, with a blank line before.
+pub fn balance(b: &Balance) -> String {
+    let mut table = Table::new(&[]);
+    let decimals = decimals_for(b.emitted, 5);
+    let cell = |flux: f64| format!("{flux:.decimals$}");
+    table.row("emitted", [cell(b.emitted), String::new()]);
+    let parts = [
+        ("absorbed by surfaces", b.absorbed),
+        ("escaped from the scene", b.escaped),
+        ("lost on backs of surfaces", b.back_face),
+        ("not yet followed to its end", b.unshot),
+    ];
+    for (name, flux) in parts {
+        let share = match 100.0 * flux / b.emitted {
+            share if !share.is_finite() => String::new(),
+            share if share > 0.0 && share < 0.005 => "< 0.01 %".to_owned(),
+            share => format!("{share:.2} %"),
+        };
+        table.row(name, [cell(flux), share]);
+    }
+    format!("\nWhere the light went [lm]\n{}", table.lines())
 }
 
 /// `name`, its middle left out if it is too long: the end often tells more than the middle.

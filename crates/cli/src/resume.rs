@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// What a checkpoint decides: these options cannot be chosen again.
-const DECIDED: [&str; 10] = [
+const DECIDED: [&str; 11] = [
     "scene",
     "UnitArguments",
     "elements",
@@ -21,6 +21,7 @@ const DECIDED: [&str; 10] = [
     "replicates",
     "leaving",
     "light",
+    "light_groups",
     "MethodArguments",
 ];
 

@@ -41,6 +41,7 @@ Examples:
   isolux solve --resume room.checkpoint --rays 4G -o better.isolux
   isolux solve labyrinth:rho=0.9 --rays 50M --seed 7 --json > summary.json
   isolux solve room.glb --light indirect -o bounced.csv
+  isolux solve room.glb --light-groups objects -o lit.isolux
   isolux solve cubes --method random-walk --estimator absorption --sequence halton
   isolux solve cubes --method gauss-seidel --factors hemicube --elements 1000
 
@@ -206,7 +207,7 @@ impl Solve {
         let detail = DETAIL * resolution.typical_edge(&scene);
         let scene = if self.contacts == Contacts::Cut { cut_at_contacts(scene, detail) } else { scene };
         let problem = Problem::new(scene, resolution)?;
-        let solver = chosen.solver(&problem, budget)?;
+        let solver = self.solver.solver(&chosen, &problem, budget)?;
         Ok(Checkpoint { problem, solver, clock: Clock { limit: self.budget.time, ..Clock::default() } })
     }
 

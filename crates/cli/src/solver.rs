@@ -2,10 +2,12 @@
 
 use crate::budget::BudgetArguments;
 use crate::failure::Failure;
+use crate::light_groups::parse_grouping;
 use crate::method::MethodArguments;
 use isolux_core::Problem;
+use isolux_core::scene::Grouping;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
-use isolux_core::solvers::{Solver, deterministic};
+use isolux_core::solvers::{LightGroups, Solver, deterministic};
 use isolux_core::transport::Leaving;
 
 #[derive(Clone, Debug, clap::Args)]
@@ -27,6 +29,12 @@ pub struct SolverArguments {
     /// themselves. The balance is that of all light either way [default: all]
     #[arg(long, value_name = "PART", value_parser = parse_light)]
     light: Option<LightPart>,
+
+    /// Solve each group of lamps for itself, all at once, so that 'isolux mix' can dim and colour them afterwards: objects (each emitting
+    /// object and each lamp by its name), materials, or a list like 'Ceiling=Lamp 1,Lamp 2;Windows=Window*'. At most 64, each of which takes
+    /// as much memory and space in .isolux files as a solve without groups
+    #[arg(long, value_name = "GROUPS", value_parser = parse_grouping)]
+    light_groups: Option<Grouping>,
 
     #[command(flatten)]
     method: MethodArguments,
@@ -53,11 +61,19 @@ impl Chosen {
         matches!(self, Chosen::Deterministic(..))
     }
 
+    /// The same with other random numbers, if it draws any.
+    fn with_seed(&self, seed: u64) -> Chosen {
+        match self {
+            Chosen::MonteCarlo(settings) => Chosen::MonteCarlo(Settings { seed, ..*settings }),
+            Chosen::Deterministic(entry, settings) => Chosen::Deterministic(entry, settings.clone()),
+        }
+    }
+
     /// A solver of `problem`, as far as `budget` reaches.
     ///
     /// # Errors
     /// Those of [`MonteCarlo::new`], and of the makers of deterministic solvers.
-    pub fn solver(&self, problem: &Problem, budget: Budget) -> Result<Box<dyn Solver>, Failure> {
+    fn solver(&self, problem: &Problem, budget: Budget) -> Result<Box<dyn Solver>, Failure> {
         match self {
             Chosen::MonteCarlo(settings) => {
                 let settings = Settings { budget, ..*settings };
@@ -90,6 +106,16 @@ impl SolverArguments {
             return Err(Failure::usage(what).with_help("choose a method of Monte Carlo, like stochastic-jacobi"));
         }
         Ok(Chosen::Deterministic(entry, self.method.deterministic_settings(entry, self.seed)?))
+    }
+
+    /// A solver of `problem` by the `chosen` method, as far as `budget` reaches; of each light group for itself, if that is asked for.
+    ///
+    /// # Errors
+    /// Those of [`MonteCarlo::new`], of the makers of deterministic solvers, and of [`LightGroups::new`].
+    pub fn solver(&self, chosen: &Chosen, problem: &Problem, budget: Budget) -> Result<Box<dyn Solver>, Failure> {
+        let Some(grouping) = &self.light_groups else { return chosen.solver(problem, budget) };
+        let make = |problem: &Problem, budget: Budget, seed: u64| chosen.with_seed(seed).solver(problem, budget);
+        Ok(Box::new(LightGroups::new(problem, grouping, budget, self.seed, make)?))
     }
 
     /// All of them but the budget, which may depend on the scene.

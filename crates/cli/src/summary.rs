@@ -1,10 +1,11 @@
 //! What a solve came to: for people in words and tables, for programs as one JSON object.
 
 use crate::accuracy::{self, CONFIDENCE, Reached};
+use crate::light_groups;
 use crate::numbers::{count, decimals_for, percent, time};
 use crate::output::{self, Written};
 use crate::progress::rays_in_words;
-use crate::report::Table;
+use crate::report::{Table, balance};
 use isolux_core::report::{ObjectSummary, per_object};
 use isolux_core::solvers::deterministic::DETERMINISTIC;
 use isolux_core::{Accuracy, Problem, Solution};
@@ -146,7 +147,8 @@ impl Summary<'_> {
         text +=
             &format!(", {} {}, seed {}\n", self.threads, plural(self.threads, "thread"), self.solution.provenance.seed);
         text += &self.error();
-        text += &self.balance();
+        text += &light_groups::table(self.problem, self.solution);
+        text += &balance(&self.solution.balance);
         text += &self.objects(most_objects);
         if !self.outputs.is_empty() {
             text += &format!("\nWrote {}\n", output::in_words(self.outputs));
@@ -169,29 +171,6 @@ impl Summary<'_> {
         let more = (reached.bound / next).powi(2) - 1.0;
         let (rays, seconds) = (round(more * self.solution.work.rays as f64), time(more * self.seconds));
         text + &format!("For {} it takes about {rays} more rays, {seconds}\n", percent(next))
-    }
-
-    fn balance(&self) -> String {
-        let b = &self.solution.balance;
-        let mut table = Table::new(&[]);
-        let decimals = decimals_for(b.emitted, 5);
-        let cell = |flux: f64| format!("{flux:.decimals$}");
-        table.row("emitted", [cell(b.emitted), String::new()]);
-        let parts = [
-            ("absorbed by surfaces", b.absorbed),
-            ("escaped from the scene", b.escaped),
-            ("lost on backs of surfaces", b.back_face),
-            ("not yet followed to its end", b.unshot),
-        ];
-        for (name, flux) in parts {
-            let share = match 100.0 * flux / b.emitted {
-                share if !share.is_finite() => String::new(),
-                share if share > 0.0 && share < 0.005 => "< 0.01 %".to_owned(),
-                share => format!("{share:.2} %"),
-            };
-            table.row(name, [cell(flux), share]);
-        }
-        format!("\nWhere the light went [lm]\n{}", table.lines())
     }
 
     fn objects(&self, most: usize) -> String {

@@ -59,7 +59,10 @@ impl WritingArguments {
                 self.picture.check_camera(&problem.scene)?;
                 let written = outputs.write(&problem, &solution, &self.picture.options(), &mut display, interrupt);
                 display.clear();
-                Ok(format!("{words}Wrote {}\n", output::in_words(&written?)))
+                Ok(match written? {
+                    nothing if nothing.is_empty() => words,
+                    written => format!("{words}Wrote {}\n", output::in_words(&written)),
+                })
             })
         })?;
         if !quiet {

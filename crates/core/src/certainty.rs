@@ -53,6 +53,26 @@ impl Ways {
         Ways { sum_sq: self.sum_sq + other.sum_sq, freedom: self.freedom + other.freedom }
     }
 
+    /// Of the sum of two independent errors, with these mean squares: `1/√ν = Σ m_k/√ν_k / Σ m_k`, as few as there can be. It is so
+    /// if both err in the same places (Cauchy and Schwarz); degrees of freedom are those of Welch and Satterthwaite.
+    fn summed(self, other: Ways, mean_squares: [f64; 2]) -> Ways {
+        let all = mean_squares[0] + mean_squares[1];
+        let part = |ways: Ways, mean_square: f64| match mean_square {
+            0.0 => (0.0, 0.0),
+            _ => {
+                let part = mean_square / all * (ways.sum_sq / ways.freedom).sqrt();
+                (part, part * part / ways.freedom)
+            }
+        };
+        let [one, two] = [part(self, mean_squares[0]), part(other, mean_squares[1])];
+        let relative = (one.0 + two.0).powi(2);
+        let freedom = match relative {
+            0.0 => self.freedom.min(other.freedom),
+            _ => relative / (one.1 + two.1),
+        };
+        if freedom.is_finite() { Ways { sum_sq: relative * freedom, freedom } } else { Ways::default() }
+    }
+
     /// ν, as few as there may be.
     pub fn at_least(&self) -> f64 {
         let doubt = ChiSquared::new(self.freedom).map_or(f64::NAN, |chi2| chi2.inverse_cdf(DOUBT));
@@ -73,6 +93,19 @@ impl Certainty {
             mean_square: merged.variance,
             freedom: merged.freedom,
             ways: self.ways.merged(other.ways),
+        }
+    }
+
+    /// Of the sum of two solutions that are independent: the light of two lamps.
+    pub fn plus(&self, other: &Certainty) -> Certainty {
+        let square = |of: &Certainty| Estimate { mean: 0.0, variance: of.mean_square, freedom: of.freedom };
+        let sum = square(self).plus(square(other));
+        Certainty {
+            scene: self.scene.plus(other.scene),
+            objects: self.objects.iter().zip(&other.objects).map(|(a, b)| a.plus(*b)).collect(),
+            mean_square: sum.variance,
+            freedom: sum.freedom,
+            ways: self.ways.summed(other.ways, [self.mean_square, other.mean_square]),
         }
     }
 
@@ -106,6 +139,17 @@ mod tests {
     }
 
     #[test]
+    fn the_errors_of_a_sum_may_all_be_in_the_same_places() {
+        let spread = Ways { sum_sq: 6.0 * 0.02, freedom: 6.0 };
+        let sum = spread.summed(spread, [3.0, 1.0]);
+        assert!((sum.sum_sq / sum.freedom - 0.02).abs() < 1e-12, "a hundred ways each, a hundred together");
+        assert!((sum.freedom - 6.0 / (0.75f64.powi(2) + 0.25f64.powi(2))).abs() < 1e-9);
+        let exact = spread.summed(Ways::default(), [3.0, 0.0]);
+        assert!((exact.sum_sq - spread.sum_sq).abs() < 1e-12 && (exact.freedom - 6.0).abs() < 1e-9);
+        assert_eq!(spread.summed(Ways::default(), [3.0, 1.0]), Ways::default(), "one of them is not known");
+    }
+
+    #[test]
     fn the_bound_of_one_way_is_students() {
         let scene = Estimate { mean: 10.0, variance: 0.04, freedom: 7.0 };
         let one = Certainty { scene, objects: vec![], mean_square: 0.04, freedom: 7.0, ways: Ways::default() };
@@ -113,6 +157,8 @@ mod tests {
         assert!((one.rms_bound(0.95) * 10.0 / scene.margin(0.95) - 1.0).abs() < 1e-3);
         let many = Certainty { ways: Ways { sum_sq: 0.0, freedom: 100.0 }, ..one.clone() };
         assert!(many.rms_bound(0.95) < 1.03 * many.rms());
+        let sum = many.plus(&many);
+        assert!((sum.mean_square - 0.08).abs() < 1e-12 && (sum.scene.mean, sum.freedom) == (20.0, 14.0));
         let both = many.merged(&many, 0.5);
         assert!((both.mean_square - 0.02).abs() < 1e-12 && both.freedom == 14.0);
     }

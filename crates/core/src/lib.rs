@@ -22,6 +22,7 @@ pub mod sampling;
 pub mod scene;
 pub mod solution;
 pub mod solvers;
+pub mod superposition;
 pub mod transport;
 pub mod view;
 

@@ -5,11 +5,13 @@
 //! ```
 //!
 //! with one weight for each solution, what it is worth as a whole ([`crate::precision`]), or its number of rays where there are few
-//! elements. Unbiased if the solutions are: weights depend on the noise of all elements together only. Cost: a look at each element.
+//! elements. Unbiased if the solutions are: weights depend on the noise of all elements together only. Light groups are merged one by one,
+//! with the weights of the sums. Cost: a look at each element.
 
 use crate::math::Rgb;
 use crate::precision::{Known, precision};
-use crate::solution::{Balance, Provenance, Work};
+use crate::solution::{Balance, GroupLight, Provenance, Work};
+use crate::superposition::sum;
 use crate::{Certainty, Error, Problem, Solution};
 
 /// Parameters that say how much was done, and may differ.
@@ -29,27 +31,44 @@ pub fn merge(problem: &Problem, solutions: &[Solution]) -> Result<Solution, Erro
     for (k, solution) in solutions.iter().enumerate() {
         check(problem, first, solution).map_err(|what| not(&format!("number {} {what}", k + 1)))?;
     }
-    let seeds = different_seeds(solutions)?;
+    check_seeds(solutions)?;
 
     let worth = worth(problem, solutions);
-    let all: f64 = worth.iter().sum();
-    let parts = || solutions.iter().zip(worth.iter().map(|worth| worth / all));
-    let mean = |e: u32| parts().fold(Rgb::BLACK, |sum, (part, w)| sum + part.irradiance[e as usize] * w as f32);
-    let variance = |e: u32| {
-        let of_part = |(part, w): (&Solution, f64)| part.std_error[e as usize].map(|error| (error * w as f32).powi(2));
-        parts().map(of_part).fold(Rgb::BLACK, |sum, variance| sum + variance)
+    let merged = mean(problem, &solutions.iter().collect::<Vec<_>>(), &worth);
+    if first.groups.is_empty() {
+        return Ok(merged);
+    }
+    let group = |(k, part): (usize, &GroupLight)| {
+        let parts: Vec<&Solution> = solutions.iter().map(|solution| &solution.groups[k].solution).collect();
+        GroupLight { solution: mean(problem, &parts, &worth), group: part.group.clone(), ..*part }
     };
-    Ok(Solution {
+    let groups: Vec<GroupLight> = first.groups.iter().enumerate().map(group).collect();
+    // Whoever mixes them again as they are gets the same bits.
+    let sum = sum(problem, &groups, merged.provenance);
+    Ok(Solution { groups, ..sum })
+}
+
+/// The mean of `parts`, weighted by what they are worth.
+fn mean(problem: &Problem, parts: &[&Solution], worth: &[f64]) -> Solution {
+    let all: f64 = worth.iter().sum();
+    let weighted = || parts.iter().zip(worth.iter().map(|worth| worth / all));
+    let mean = |e: u32| weighted().fold(Rgb::BLACK, |sum, (part, w)| sum + part.irradiance[e as usize] * w as f32);
+    let variance = |e: u32| {
+        let of_part = |(part, w): (&&Solution, f64)| part.std_error[e as usize].map(|error| (error * w as f32).powi(2));
+        weighted().map(of_part).fold(Rgb::BLACK, |sum, variance| sum + variance)
+    };
+    Solution {
         irradiance: problem.mesh.elements().map(mean).collect(),
         std_error: problem.mesh.elements().map(|e| variance(e).map(f32::sqrt)).collect(),
-        certainty: certainty(solutions, &worth),
+        certainty: certainty(parts, worth),
         work: Work {
-            rays: solutions.iter().map(|part| part.work.rays).sum(),
-            replicates: solutions.iter().map(|part| part.work.replicates).sum(),
+            rays: parts.iter().map(|part| part.work.rays).sum(),
+            replicates: parts.iter().map(|part| part.work.replicates).sum(),
         },
-        balance: parts().fold(Balance::default(), |sum, (part, w)| sum + part.balance / (1.0 / w)),
-        provenance: provenance(first, &seeds),
-    })
+        balance: weighted().fold(Balance::default(), |sum, (part, w)| sum + part.balance / (1.0 / w)),
+        provenance: provenance(parts),
+        groups: Vec::new(),
+    }
 }
 
 /// Whether a solution can be merged with the `first`; if not, what it has or lacks.
@@ -69,11 +88,17 @@ fn check(problem: &Problem, first: &Solution, solution: &Solution) -> Result<(),
     if (&one.method, asked(one)) != (&other.method, asked(other)) {
         return Err("was solved by another method, or with other parameters than its rays".to_owned());
     }
+    let lamps = |solution: &Solution| -> Vec<_> {
+        solution.groups.iter().map(|part| (part.group.clone(), part.factor)).collect()
+    };
+    if lamps(first) != lamps(solution) {
+        return Err("has other light groups".to_owned());
+    }
     Ok(())
 }
 
-/// The seeds of all solutions, if no two are the same.
-fn different_seeds(solutions: &[Solution]) -> Result<Vec<u64>, Error> {
+/// Whether no two solutions have the same seed.
+fn check_seeds(solutions: &[Solution]) -> Result<(), Error> {
     let mut seeds = Vec::new();
     for (k, solution) in solutions.iter().enumerate() {
         for seed in seeds_of(solution) {
@@ -84,7 +109,7 @@ fn different_seeds(solutions: &[Solution]) -> Result<Vec<u64>, Error> {
             seeds.push(seed);
         }
     }
-    Ok(seeds)
+    Ok(())
 }
 
 fn seeds_of(solution: &Solution) -> Vec<u64> {
@@ -107,8 +132,8 @@ fn worth(problem: &Problem, solutions: &[Solution]) -> Vec<f64> {
 }
 
 /// How sure the sums are, if all know it.
-fn certainty(solutions: &[Solution], worth: &[f64]) -> Option<Certainty> {
-    let mut parts = solutions.iter().zip(worth);
+fn certainty(parts: &[&Solution], worth: &[f64]) -> Option<Certainty> {
+    let mut parts = parts.iter().zip(worth);
     let (first, &worth) = parts.next()?;
     let start = (first.certainty.clone()?, worth);
     let merged = parts.try_fold(start, |(merged, before), (part, worth)| {
@@ -118,10 +143,11 @@ fn certainty(solutions: &[Solution], worth: &[f64]) -> Option<Certainty> {
     merged.map(|(certainty, _)| certainty)
 }
 
-fn provenance(first: &Solution, seeds: &[u64]) -> Provenance {
-    let mut provenance = Provenance { version: crate::VERSION.to_owned(), ..first.provenance.clone() };
+/// That of the first, with the seeds of all.
+fn provenance(parts: &[&Solution]) -> Provenance {
+    let mut provenance = Provenance { version: crate::VERSION.to_owned(), ..parts[0].provenance.clone() };
     provenance.parameters.retain(|(name, _)| !AMOUNT.contains(&name.as_str()));
-    let seeds: Vec<String> = seeds.iter().map(u64::to_string).collect();
+    let seeds: Vec<String> = parts.iter().flat_map(|part| seeds_of(part)).map(|seed| seed.to_string()).collect();
     provenance.parameters.push((SEEDS.to_owned(), seeds.join(", ")));
     provenance
 }
@@ -153,6 +179,7 @@ mod tests {
                 seed,
                 version: crate::VERSION.to_owned(),
             },
+            groups: Vec::new(),
         }
     }
 

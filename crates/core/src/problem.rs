@@ -2,14 +2,17 @@
 
 use crate::Error;
 use crate::geometry::{self, Geometry};
+use crate::math::Rgb;
 use crate::mesh::{Cut, ElementMesh, Resolution};
-use crate::scene::Scene;
+use crate::scene::{Emitter, LightGroup, Scene};
+use std::sync::Arc;
 
-/// A scene, cut into elements, ready to be traced.
+/// A scene, cut into elements, ready to be traced. Clones share the geometry.
+#[derive(Clone)]
 pub struct Problem {
     pub scene: Scene,
     pub mesh: ElementMesh,
-    pub geometry: Box<dyn Geometry>,
+    pub geometry: Arc<dyn Geometry>,
 }
 
 impl Problem {
@@ -36,6 +39,35 @@ impl Problem {
     /// Number of the object of the scene on which element `e` lies.
     pub fn object(&self, e: u32) -> u32 {
         self.scene.triangles[self.mesh.triangle(e) as usize].object
+    }
+
+    /// Flux [lm] per channel that the sources of `group` emit.
+    pub fn flux_of(&self, group: &LightGroup) -> [f64; 3] {
+        let objects = group.objects(&self.scene);
+        let surfaces = self.mesh.elements().filter(|&e| objects[self.object(e) as usize]);
+        let radius = self.geometry.bounding_sphere().1;
+        let lights = group.sources.iter().filter_map(|source| match source.emitter {
+            Emitter::Object(_) => None,
+            Emitter::Light(k) => Some(self.scene.lights[k as usize].flux(radius)),
+        });
+        surfaces.map(|e| self.mesh.emitted_flux(e)).chain(lights).fold([0.0; 3], |sum, flux: Rgb| {
+            let flux = flux.to_array();
+            std::array::from_fn(|c| sum[c] + f64::from(flux[c]))
+        })
+    }
+
+    /// Lets nothing shine but number `lit` of the `groups`, each of whose sources emits what it does in `whole`, a problem of the same
+    /// elements and geometry.
+    pub fn light_only(&mut self, whole: &Problem, groups: &[LightGroup], lit: usize) {
+        self.scene.objects.clone_from(&whole.scene.objects);
+        self.scene.materials.clone_from(&whole.scene.materials);
+        self.scene.lights.clone_from(&whole.scene.lights);
+        let factor = |k: usize| if k == lit { Rgb::WHITE } else { Rgb::BLACK };
+        self.scene.relight(groups.iter().enumerate().map(|(k, group)| (group, factor(k))));
+        self.scene.lights.retain(|light| !light.intensity.is_black());
+        let objects = groups[lit].objects(&whole.scene);
+        let shines = |triangle: u32| objects[whole.scene.triangles[triangle as usize].object as usize];
+        self.mesh.take_emission(&whole.mesh, shines);
     }
 
     /// Why solutions of this problem and of the `other` have nothing in common; `None` if they are of the same scene, cut into the same

@@ -1,6 +1,7 @@
 //! The result: how much light falls on every element, how sure that is, and where all the light went.
 
 use crate::math::Rgb;
+use crate::scene::LightGroup;
 use crate::{Certainty, Problem};
 
 /// Irradiance of every element with its standard error. The default is that of a scene without elements.
@@ -18,6 +19,21 @@ pub struct Solution {
     pub work: Work,
     pub balance: Balance,
     pub provenance: Provenance,
+    /// The light of each group of sources, if they were solved apart; `self` is their sum.
+    #[serde(skip)]
+    pub groups: Vec<GroupLight>,
+}
+
+/// The light of a group of sources, solved for itself. See [`crate::superposition`].
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct GroupLight {
+    pub group: LightGroup,
+    /// What the group emits [lm], by channel, at factor 1.
+    pub flux: [f64; 3],
+    /// How many times so much it emits in the sum.
+    pub factor: Rgb,
+    /// At factor 1, in the scene without any other source.
+    pub solution: Solution,
 }
 
 /// What it cost.
@@ -99,6 +115,19 @@ impl std::ops::Add for Balance {
             escaped: self.escaped + other.escaped,
             back_face: self.back_face + other.back_face,
             unshot: self.unshot + other.unshot,
+        }
+    }
+}
+
+impl std::ops::Mul<f64> for Balance {
+    type Output = Balance;
+    fn mul(self, k: f64) -> Balance {
+        Balance {
+            emitted: self.emitted * k,
+            absorbed: self.absorbed * k,
+            escaped: self.escaped * k,
+            back_face: self.back_face * k,
+            unshot: self.unshot * k,
         }
     }
 }

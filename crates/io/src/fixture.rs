@@ -102,6 +102,7 @@ pub fn made_up(problem: &Problem) -> Solution {
             seed: u64::MAX,
             version: isolux_core::VERSION.into(),
         },
+        groups: Vec::new(),
     }
 }
 

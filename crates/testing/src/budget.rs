@@ -59,6 +59,11 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("indirect light: box", 8 * comparisons(6)),
     ("indirect light: furnace", comparisons(9)),
     ("indirect light: point light", comparisons(8)),
+    // The inside of a sphere by groups: their sum, each of five alone, a mixture.
+    ("light groups: sum", comparisons(8)),
+    ("light groups: each alone", 5 * comparisons(8)),
+    ("light groups: mixture", comparisons(8)),
+    ("light groups: error bars", 2),
     ("black room", comparisons(6)),
     ("bright sphere", comparisons(8)),
     ("box: 12 elements", comparisons(6)),

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 use isolux_core::Problem;
 use isolux_core::geometry::{Geometry, Hit, HitLists, NONE, Ray};
 use isolux_core::math::hash::{mix, unit_f64};
+use std::sync::Arc;
 
 /// A fault of the lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,11 +22,11 @@ pub enum Fault {
 /// `problem` with faulty lines.
 pub fn with_fault(problem: Problem, fault: Fault) -> Problem {
     let triangles = problem.scene.triangles.len() as u32;
-    Problem { geometry: Box::new(Faulty { sound: problem.geometry, triangles, fault }), ..problem }
+    Problem { geometry: Arc::new(Faulty { sound: problem.geometry, triangles, fault }), ..problem }
 }
 
 struct Faulty {
-    sound: Box<dyn Geometry>,
+    sound: Arc<dyn Geometry>,
     triangles: u32,
     fault: Fault,
 }

@@ -14,7 +14,7 @@ const LAYERS: &[(usize, &[&str])] = &[
     (4, &["geometry"]),
     (5, &["problem"]),
     (6, &["transport", "solution"]),
-    (7, &["form_factors", "accuracy"]),
+    (7, &["form_factors", "accuracy", "superposition"]),
     (8, &["solvers"]),
     (9, &["run", "view", "report", "compare", "merge"]),
 ];

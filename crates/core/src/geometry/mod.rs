@@ -16,6 +16,7 @@ pub use sphere::Sphere;
 
 use crate::scene::{Scene, Shape};
 use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
 /// "No triangle": what a ray from a lamp or a camera leaves, and what a ray into the open hits.
 pub const NONE: u32 = u32::MAX;
@@ -118,10 +119,10 @@ pub trait Geometry: Send + Sync {
 }
 
 /// The geometry for `scene`: the fast kernel for triangles, the exact one for a sphere.
-pub fn for_scene(scene: &Scene) -> Box<dyn Geometry> {
+pub fn for_scene(scene: &Scene) -> Arc<dyn Geometry> {
     match scene.shape {
-        Shape::Triangles => Box::new(Bvh::new(scene)),
-        Shape::Sphere { center, radius } => Box::new(Sphere::new(center, radius)),
+        Shape::Triangles => Arc::new(Bvh::new(scene)),
+        Shape::Sphere { center, radius } => Arc::new(Sphere::new(center, radius)),
     }
 }
 

@@ -41,6 +41,16 @@ impl Estimate {
             freedom: if freedom.is_nan() { self.freedom + other.freedom } else { freedom },
         }
     }
+
+    /// The sum of both, which are independent.
+    pub fn plus(self, other: Estimate) -> Estimate {
+        self.merged(other, 0.5).times(2.0)
+    }
+
+    /// Of `k` times the quantity.
+    pub fn times(self, k: f64) -> Estimate {
+        Estimate { mean: self.mean * k, variance: self.variance * k * k, freedom: self.freedom }
+    }
 }
 
 /// Student's t with so much `freedom` is within plus or minus this with probability `confidence`; NaN without freedom.
@@ -89,6 +99,8 @@ mod tests {
         assert_eq!(two, Estimate { mean: 3.0, variance: 0.5, freedom: 14.0 });
         let exact = Estimate { variance: 0.0, ..one };
         assert_eq!(exact.merged(exact, 0.25), Estimate { freedom: 14.0, ..exact });
+        assert_eq!(one.plus(Estimate { mean: 4.0, ..one }), Estimate { mean: 6.0, variance: 2.0, freedom: 14.0 });
+        assert_eq!(one.times(3.0), Estimate { mean: 6.0, variance: 9.0, freedom: 7.0 });
         // Whoever has no weight changes nothing.
         assert_eq!(one.merged(Estimate { mean: 9.0, variance: 5.0, freedom: 1.0 }, 0.0), one);
     }

@@ -235,6 +235,12 @@ impl ElementMesh {
         })
     }
 
+    /// Takes the emission of `other`, which has the same elements, on those triangles that `keep` names; all else is black.
+    pub fn take_emission(&mut self, other: &ElementMesh, keep: impl Fn(u32) -> bool) {
+        let kept = |e: u32| Some(other.emission(e)).filter(|emission| !emission.is_black() && keep(other.triangle(e)));
+        self.emission = other.elements().map(|e| kept(e).unwrap_or(Rgb::BLACK)).collect();
+    }
+
     fn patch_of(&self, e: u32) -> &Patch {
         &self.patches[self.patch[e as usize] as usize]
     }

@@ -43,6 +43,15 @@ impl SparseColors {
     }
 }
 
+/// One colour after the other.
+impl FromIterator<Rgb> for SparseColors {
+    fn from_iter<I: IntoIterator<Item = Rgb>>(items: I) -> SparseColors {
+        let mut colors = SparseColors::default();
+        items.into_iter().for_each(|color| colors.push(color));
+        colors
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,12 +5,14 @@ pub mod budget;
 pub mod deterministic;
 pub mod direct_light;
 mod gathering;
+mod light_groups;
 pub mod monte_carlo;
 mod replicates;
 mod shooting;
 mod totals;
 
 pub use direct_light::DirectLight;
+pub use light_groups::LightGroups;
 pub use monte_carlo::MonteCarlo;
 
 use crate::form_factors::Row;

@@ -5,6 +5,7 @@
 use super::{ExportOptions, LitScene, cannot_encode};
 use crate::Error;
 use isolux_core::report;
+use isolux_core::superposition;
 use isolux_core::{Problem, Solution};
 use serde_json::{Map, Value, json};
 
@@ -63,10 +64,30 @@ pub fn summary(problem: &Problem, solution: &Solution, extras: &Map<String, Valu
         "objects": report::per_object(problem, solution),
         "units": { "area": "m²", "mean, mean_error, min, max": "lux", "balance, emitted, incident, reflected": "lm" },
     });
+    if !solution.groups.is_empty() {
+        summary["light_groups"] = light_groups(problem, solution);
+    }
     for (name, value) in extras {
         summary[name.as_str()] = value.clone();
     }
     summary
+}
+
+/// The light of each group of sources, alone.
+fn light_groups(problem: &Problem, solution: &Solution) -> Value {
+    let one = |k: usize| {
+        let (part, alone) = (&solution.groups[k], superposition::alone(problem, solution, k));
+        json!({
+            "name": part.group.name,
+            "sources": part.group.sources.len(),
+            "factor": part.factor.to_array(),
+            "emitted": alone.balance.emitted,
+            "rays": alone.work.rays,
+            "mean": alone.certainty.as_ref().map(|certainty| certainty.scene.mean),
+            "rms_error_estimate": alone.rms_error(),
+        })
+    };
+    (0..solution.groups.len()).map(one).collect()
 }
 
 #[cfg(test)]

@@ -169,6 +169,7 @@ impl Solver for MatrixSolver {
             work: Work::default(),
             balance,
             provenance: provenance(problem, &self.name, parameters, seed),
+            groups: Vec::new(),
         }
     }
 

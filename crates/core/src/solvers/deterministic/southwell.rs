@@ -165,6 +165,7 @@ impl Solver for Southwell {
             work: Work { rays: self.rays, replicates: 0 },
             balance: Balance { absorbed: self.surfaces.absorbed(&self.irradiance), ..self.flux },
             provenance: provenance(problem, NAME, parameters, factors.seed),
+            groups: Vec::new(),
         }
     }
 

@@ -21,6 +21,7 @@ mod sources;
 mod walks;
 
 pub use method::{METHODS, Method, NamedMethod};
+pub(super) use rounds::{extended_from, rays_for};
 pub use settings::{Budget, LightPart, Settings};
 
 use self::complete::CompleteSolution;
@@ -166,7 +167,7 @@ impl MonteCarlo {
     fn provenance(&self, problem: &Problem) -> Provenance {
         let mut parameters = self.settings.budget.parameters();
         parameters.push(("replicates".to_owned(), self.settings.replicates.to_string()));
-        parameters.extend(self.extended_from());
+        parameters.extend(extended_from(&self.extended));
         if self.settings.method.has_leaving() {
             parameters.push(("leaving".to_owned(), self.settings.leaving.name().to_owned()));
         }
@@ -217,6 +218,7 @@ impl Solver for MonteCarlo {
             work: Work { rays: self.rays, replicates: self.replicates.count() },
             balance,
             provenance: self.provenance(problem),
+            groups: Vec::new(),
         }
     }
 

@@ -75,22 +75,22 @@ impl MonteCarlo {
             self.start_replicate(problem);
         }
     }
+}
 
-    /// What the provenance says of an extended run: from what it was extended.
-    pub(super) fn extended_from(&self) -> Option<(String, String)> {
-        let in_words = |budget: &Budget| {
-            let parameters = budget.parameters().into_iter().map(|(name, value)| format!("{name} {value}"));
-            parameters.collect::<Vec<_>>().join(" ")
-        };
-        let before: Vec<String> = self.extended.iter().map(in_words).collect();
-        (!before.is_empty()).then(|| ("extended from".to_owned(), before.join(", then ")))
-    }
+/// What the provenance says of an extended run: from what it was extended, by the budgets `before` its last one.
+pub fn extended_from(before: &[Budget]) -> Option<(String, String)> {
+    let in_words = |budget: &Budget| {
+        let parameters = budget.parameters().into_iter().map(|(name, value)| format!("{name} {value}"));
+        parameters.collect::<Vec<_>>().join(" ")
+    };
+    let before: Vec<String> = before.iter().map(in_words).collect();
+    (!before.is_empty()).then(|| ("extended from".to_owned(), before.join(", then ")))
 }
 
 /// Rays of the round that shall bring the error down to what is asked for, where it is `excess` times as large after so many
 /// `rays`: it falls with the root of the rays. A little more than that, so that it need not be tried again; not many times as many, for the
 /// error is not known well after few, and not very few, for a round has its cost.
-fn rays_for(rays: u64, excess: f64) -> u64 {
+pub fn rays_for(rays: u64, excess: f64) -> u64 {
     let (rays, excess) = (rays as f64, if excess.is_nan() { f64::INFINITY } else { excess });
     ((1.1 * excess * excess - 1.0) * rays).clamp(rays / 4.0, 4.0 * rays) as u64
 }

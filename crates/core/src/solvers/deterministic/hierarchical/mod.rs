@@ -266,6 +266,7 @@ impl Solver for Hierarchical {
             work: Work::default(),
             balance: self.balance(),
             provenance: provenance(problem, NAME, parameters, factors.seed),
+            groups: Vec::new(),
         }
     }
 
