@@ -33,6 +33,15 @@ impl Problem {
         Ok(Problem { scene, mesh, geometry })
     }
 
+    /// The same scene, cut as `cut` says.
+    ///
+    /// # Errors
+    /// Those of [`ElementMesh::with_cut`].
+    pub fn cut_anew(self, cut: &Cut) -> Result<Problem, Error> {
+        let mesh = ElementMesh::with_cut(&self.scene, cut)?;
+        Ok(Problem { mesh, ..self })
+    }
+
     /// Why solutions of this problem and of the `other` have nothing in common; `None` if they are of the same scene, cut into the same
     /// elements.
     pub fn difference(&self, other: &Problem) -> Option<&'static str> {

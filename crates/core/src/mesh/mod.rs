@@ -24,13 +24,16 @@ mod triangle;
 pub use cut::Cut;
 pub use locate::{Point, TOGETHER};
 pub use lookup::{LANES, Lookup};
+pub use parts::{MOST_SPLITS, PARTS};
 pub use resolution::Resolution;
+pub(crate) use resolution::slices;
+pub use slices::Slices;
+pub(crate) use triangle::surface_area;
 
 use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
 use glam::{Vec2, Vec3};
 use parts::Part;
-use slices::Slices;
 use sparse::SparseColors;
 
 /// Elements of all triangles, struct of arrays, 16 bytes an element and 12 more if it emits light.

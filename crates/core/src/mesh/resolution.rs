@@ -31,6 +31,11 @@ impl Default for Resolution {
 const MOST_DIVISIONS: f64 = 30_000.0;
 
 impl Resolution {
+    /// Number of the sides of all triangles of `scene`, the fewest elements there can be.
+    pub fn least(scene: &Scene) -> u64 {
+        (0..scene.triangles.len() as u32).map(|t| sides(scene, t)).sum()
+    }
+
     /// How to cut `scene`.
     ///
     /// # Errors
@@ -41,10 +46,7 @@ impl Resolution {
                 Err(Error::Parameter { name: "elements", value: "0".into(), allowed: "ask for at least one element" })
             }
             Resolution::Elements(target) => cut_for_target(scene, target),
-            Resolution::Extra(more) => {
-                let least: u64 = (0..scene.triangles.len() as u32).map(|t| sides(scene, t)).sum();
-                cut_for_target(scene, least.saturating_add(more))
-            }
+            Resolution::Extra(more) => cut_for_target(scene, Resolution::least(scene).saturating_add(more)),
             Resolution::MaxEdge(edge) if edge > 0.0 && edge.is_finite() => {
                 let edge = f64::from(edge);
                 let limited = |corners: [Vec3; 3]| divisions(longest_edge(corners) / edge);
@@ -107,7 +109,7 @@ fn elements(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16 + Sync
 
 /// Slices as high as the shortest edge, or if that is much less than `edge`, such that each half of one has no edge longer
 /// than `edge`.
-fn slices(corners: [Vec3; 3], edge: f64) -> Slices {
+pub fn slices(corners: [Vec3; 3], edge: f64) -> Slices {
     let (shortest, length) = (shortest_edge(corners), longest_edge(corners));
     let count = if shortest > FRAC_1_SQRT_2 * edge {
         (length / shortest).floor()
