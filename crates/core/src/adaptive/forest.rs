@@ -5,7 +5,7 @@
 //! samples on it; one smaller than the pilot's elements has none of its own, and takes that of the larger patch. Needles
 //! are cut across first, for elements of the size that their light asks for.
 
-use super::gradient::{Known, Sample, mean};
+use super::gradient::{Known, Sample, Summary};
 use crate::Problem;
 use crate::mesh::{Cut, MOST_SPLITS, PARTS, Slices, cells, slices, surface_area};
 use crate::scene::Scene;
@@ -142,7 +142,8 @@ impl Forest {
 impl Tree {
     fn grown(scene: &Scene, t: u32, samples: &[Sample], rule: &Rule) -> Tree {
         let corners = scene.corners(t);
-        let (square, _) = mean(samples).unwrap_or((0.0, 0.0));
+        let known = Summary::of(samples);
+        let square = known.map_or(0.0, |known| known.square);
         let edge = (rule.error / (EQUILATERAL * square)).sqrt().sqrt();
         let slices = slices(corners, edge);
         let mut tree = Tree { slices, first: vec![LEAF; slices.patch_count() as usize] };
@@ -160,7 +161,7 @@ impl Tree {
                 area: area * slices.area_share(patch),
                 edges: edges_squared(slices.corners(patch).map(position)),
             };
-            tree.grow(patch, size, 0, &mut own, mean(samples), rule);
+            tree.grow(patch, size, 0, &mut own, known, rule);
         }
         tree
     }
@@ -172,14 +173,15 @@ impl Tree {
         size: Size,
         depth: usize,
         samples: &mut [Sample],
-        around: Option<(f64, f64)>,
+        around: Option<Summary>,
         rule: &Rule,
     ) {
-        let known = mean(samples).or(around);
-        let Some((square, pilot)) = known else { return };
+        let below = around.map(|around| Summary { variance: 0.0, ..around });
+        let known = Summary::of(samples).or(below);
+        let Some(summary) = known else { return };
         let part = size.part();
-        let is_large = part.area > rule.smallest && part.area > BELOW_PILOT * pilot;
-        if depth == MOST_SPLITS || !is_large || square * size.error() <= rule.error {
+        let is_large = part.area > rule.smallest && part.area > BELOW_PILOT * summary.area;
+        if depth == MOST_SPLITS || !is_large || size.error(&summary) <= rule.error {
             return;
         }
         let first = self.split(patch);
@@ -247,9 +249,10 @@ impl Size {
         Size { area: 0.25 * self.area, edges: 0.25 * self.edges }
     }
 
-    /// Error [lux² m²] of a single element for a gradient of 1 lux/m.
-    fn error(self) -> f64 {
-        self.area * self.edges / 72.0
+    /// Error [lux² m²] of a single element: what the samples differ, and what light differs within each of them.
+    fn error(self, known: &Summary) -> f64 {
+        let within = known.square * self.edges / 72.0 * (known.area / self.area).min(1.0);
+        self.area * (known.variance + within)
     }
 }
 

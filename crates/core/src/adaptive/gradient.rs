@@ -27,6 +27,8 @@ pub struct Sample {
     pub uv: Vec2,
     /// Area of the element [m²].
     pub area: f64,
+    /// Irradiance [lux].
+    pub value: f64,
     /// g² [lux²/m²].
     pub square: f64,
 }
@@ -42,13 +44,20 @@ impl Known {
     /// What `solution` tells.
     pub fn of(problem: &Problem, solution: &Solution) -> Known {
         let mesh = &problem.mesh;
-        let mut squares = squared_gradients(problem, solution);
+        let light = smooth(problem, solution).irradiance;
+        let light: Vec<f64> = light.into_iter().map(|light| light.luminance_f64()).collect();
+        let mut squares = squared_gradients(problem, &light);
         let area = |e: u32| f64::from(mesh.area(e));
         let mean = (0..).zip(&squares).map(|(e, g)| area(e) * g.sqrt()).sum::<f64>() / mesh.total_area();
         // In the dark all elements are equal.
         let least = if mean > 0.0 { (LEAST * mean).powi(2) } else { 1.0 };
         squares.iter_mut().for_each(|g| *g = g.max(least));
-        let sample = |e: u32| Sample { uv: middle(problem, e), area: area(e), square: squares[e as usize] };
+        let sample = |e: u32| Sample {
+            uv: middle(problem, e),
+            area: area(e),
+            value: light[e as usize],
+            square: squares[e as usize],
+        };
         let mut of_triangle = vec![0..0; problem.scene.triangles.len()];
         // Elements are numbered triangle by triangle.
         for e in 0..mesh.len() {
@@ -69,24 +78,41 @@ impl Known {
     }
 }
 
-/// Mean of g² [lux²/m²] over `samples`, and of their areas [m²]; `None` without any.
-pub fn mean(samples: &[Sample]) -> Option<(f64, f64)> {
-    let area = samples.iter().map(|sample| sample.area).sum::<f64>();
-    let square = samples.iter().map(|sample| sample.area * sample.square).sum::<f64>() / area;
-    (area > 0.0).then(|| (square, area / samples.len() as f64))
+/// What some samples tell together.
+#[derive(Clone, Copy, Debug)]
+pub struct Summary {
+    /// Mean g² [lux²/m²].
+    pub square: f64,
+    /// Mean area of their elements [m²].
+    pub area: f64,
+    /// Variance between them [lux²].
+    pub variance: f64,
+}
+
+impl Summary {
+    /// `None` without samples.
+    pub fn of(samples: &[Sample]) -> Option<Summary> {
+        let area = samples.iter().map(|sample| sample.area).sum::<f64>();
+        let mean = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(|s| s.area * value(s)).sum::<f64>() / area;
+        if area <= 0.0 {
+            return None;
+        }
+        let middle = mean(&|sample| sample.value);
+        let variance = mean(&|sample| (sample.value - middle).powi(2));
+        Some(Summary { square: mean(&|sample| sample.square), area: area / samples.len() as f64, variance })
+    }
 }
 
 /// g² [lux²/m²] of every element.
-fn squared_gradients(problem: &Problem, solution: &Solution) -> Vec<f64> {
-    let light = smooth(problem, solution).irradiance;
+fn squared_gradients(problem: &Problem, light: &[f64]) -> Vec<f64> {
     let weight: Vec<f32> = problem.mesh.elements().map(|e| problem.mesh.area(e)).collect();
     let neighbours = Neighbours::new(problem, &Vertices::new(problem), &weight);
     let position = |e: u32| problem.geometry.surface(problem.mesh.triangle(e), middle(problem, e)).0;
     let square = |e: u32| {
-        let (here, value) = (position(e), light[e as usize].luminance_f64());
+        let (here, value) = (position(e), light[e as usize]);
         let (mut change, mut distance) = (0.0, 0.0);
         for (n, share) in neighbours.of(e as usize) {
-            change += f64::from(share) * (light[n].luminance_f64() - value).powi(2);
+            change += f64::from(share) * (light[n] - value).powi(2);
             distance += f64::from(share * position(n as u32).distance_squared(here));
         }
         if distance > 0.0 { 2.0 * change / distance } else { 0.0 }
