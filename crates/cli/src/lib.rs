@@ -16,6 +16,7 @@ mod input;
 mod interrupt;
 mod list;
 mod merge;
+mod mesh;
 mod method;
 mod numbers;
 mod output;

@@ -12,8 +12,18 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// What a checkpoint decides: these options cannot be chosen again.
-const DECIDED: [&str; 9] =
-    ["scene", "UnitArguments", "elements", "max_edge", "seed", "replicates", "leaving", "light", "MethodArguments"];
+const DECIDED: [&str; 10] = [
+    "scene",
+    "UnitArguments",
+    "elements",
+    "max_edge",
+    "MeshArguments",
+    "seed",
+    "replicates",
+    "leaving",
+    "light",
+    "MethodArguments",
+];
 
 /// Where a run is written down, and which one goes on.
 #[derive(Clone, Debug, clap::Args)]

@@ -6,6 +6,7 @@ use crate::drafts::Drafts;
 use crate::drive::Drive;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
+use crate::mesh::{Limits, MeshArguments, Meshed};
 use crate::method::MethodArguments;
 use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
@@ -84,6 +85,9 @@ pub struct Solve {
     /// Instead: longest edge of an element in metres
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     max_edge: Option<f32>,
+
+    #[command(flatten)]
+    mesh: MeshArguments,
 
     #[command(flatten)]
     accuracy: AccuracyArguments,
@@ -249,10 +253,13 @@ impl Solve {
         let scene = input::scene(self.scene.as_deref().unwrap_or(Path::new("")), &self.units.options())?;
         self.picture.check_camera(&scene)?;
         let accuracy = self.accuracy.accuracy(&scene)?;
-        display.stage("cutting the surfaces into elements");
-        let problem = Problem::new(scene, self.resolution())?;
-        let solver = chosen.solver(&problem, self.budget(accuracy))?;
-        Ok(Checkpoint { problem, solver, clock: Clock { limit: self.time, ..Clock::default() } })
+        let limits = Limits { rays: self.rays, time: self.time, light: self.light.unwrap_or_default() };
+        let Meshed { problem, budget, took } =
+            self.mesh.cut(scene, self.resolution(), self.budget(accuracy), limits, display, |problem| {
+                chosen.solver(problem, self.budget(accuracy)).map(drop)
+            })?;
+        let solver = chosen.solver(&problem, budget)?;
+        Ok(Checkpoint { problem, solver, clock: Clock { solved: took, limit: self.time } })
     }
 
     fn resolution(&self) -> Resolution {

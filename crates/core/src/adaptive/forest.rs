@@ -1,9 +1,12 @@
 //! Trees of patches: each is split while a single element on it would have too large an error.
 //!
-//! With a gradient g that may have any direction, irradiance varies over a triangle with edges a, b, c by
-//! `g² (a² + b² + c²) / 72` in the mean square (second moments of a triangle). That times its area is its error, the mean of g² over it taken from the
-//! samples on it; one smaller than the pilot's elements has none of its own, and takes that of the larger patch. Needles
-//! are cut across first, for elements of the size that their light asks for.
+//! ```text
+//! error = A (variance between the samples of the pilot on it + g² (a² + b² + c²) / 72)
+//! ```
+//!
+//! where the second term is what irradiance varies within each sample's own element, a triangle with edges a, b, c (its second moments, for a
+//! gradient of any direction). A patch smaller than the pilot's elements has no samples of its own: it has the g of the larger patch, and its own edges.
+//! Needles are cut across first, for elements of the size that their light asks for.
 
 use super::gradient::{Known, Sample, Summary};
 use crate::Problem;

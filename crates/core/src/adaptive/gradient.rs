@@ -6,8 +6,8 @@
 //!
 //! over the neighbours of an element on the same smooth surface, with their shares s ([`crate::view`]): for a direction that may be any
 //! `(g · d)²` is `g² d² / 2` in the mean. Noise was taken out of E before, as far as the error bars allow. At an edge of a shadow that is the jump
-//! over the distance, so it is as steep as the pilot can tell. Gradients below a share of the mean are taken for that:
-//! noise knows no better, and an element more there costs little.
+//! over the distance, so it is as steep as the pilot can tell. What is less steep than a share of the mean counts as that: the noise of a
+//! pilot tells no better, and an element more there costs little.
 
 use crate::view::neighbours::Neighbours;
 use crate::view::smooth;
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// The least gradient, as a share of the mean one.
-const LEAST: f64 = 0.1;
+const LEAST: f64 = 0.3;
 
 /// What is known at the middle of an element of a pilot.
 #[derive(Clone, Copy, Debug)]

@@ -7,7 +7,7 @@
 //! error of an element  ∫ g² dA h² ~ g² h⁴ = λ,    so h ~ g^(-1/2),    λ such that Σ elements = N
 //! ```
 //!
-//! Against equal elements that takes `rms(g) / mean(g)` off the error. The gradients are those of *pilots*, quick solutions on meshes of a
+//! The error is then smaller than that of equal elements by `rms(g) / mean(g)`. The gradients are those of *pilots*, quick solutions on meshes of a
 //! few elements, the first one uniform, each next one finer where the one before was steep ([`follow_light`]): so edges are found to within
 //! ever smaller elements. [`gradient`] tells g, [`forest`] splits patches while their error is above λ, [`balance`] keeps
 //! neighbours within one level of each other. What a mesh becomes depends on the light alone, not on textures, and is always the
@@ -20,15 +20,17 @@ mod gradient;
 
 use self::forest::{Forest, Rule};
 use self::gradient::Known;
-use crate::mesh::{Cut, Resolution};
+use crate::mesh::{Cut, MOST_ELEMENTS, Resolution};
 use crate::scene::Scene;
 use crate::solvers::monte_carlo::{Budget, LightPart, METHODS, Settings};
 use crate::{Error, Problem, Solution};
 
 /// The pilots: each one's share of the elements of the mesh at last, and of the rays of all pilots.
-const PILOTS: [(f64, f64); 2] = [(1.0 / 16.0, 0.3), (1.0 / 4.0, 0.7)];
+const PILOTS: [(f64, f64); 2] = [(1.0 / 16.0, 0.15), (1.0 / 4.0, 0.85)];
 /// Share of the whole work that the pilots may take.
 pub const SHARE: f64 = 0.1;
+/// Replicates that a pilot needs: fewer have no error bars.
+pub const LEAST_REPLICATES: u32 = 2;
 /// A mesh is close enough to the number of elements that was asked for from this share of it on.
 const CLOSE: f64 = 0.98;
 /// Trials to meet the number of elements, without balancing and with it.
@@ -36,7 +38,7 @@ const TRIALS: usize = 40;
 const TRIALS_TO_BALANCE: usize = 6;
 
 /// Cuts `scene` into at most `elements` elements, or one for each side of a triangle if these are more, where the light asks for them.
-/// `solve` solves a pilot with a share of the pilots' work, in (0, 1]; if it gives nothing, the mesh stays that of the pilot.
+/// `solve` solves a pilot with a share of the pilots' work, in (0, 1]; if it gives nothing, the mesh is uniform.
 ///
 /// # Errors
 /// Those of [`Problem::new`] and of `solve`.
@@ -45,6 +47,9 @@ pub fn follow_light<E: From<Error>>(
     elements: u64,
     mut solve: impl FnMut(&Problem, f64) -> Result<Option<Solution>, E>,
 ) -> Result<Problem, E> {
+    if elements > MOST_ELEMENTS {
+        return Err(Error::TooManyElements { asked: elements, limit: MOST_ELEMENTS }.into());
+    }
     let least = Resolution::least(&scene);
     let more = elements.saturating_sub(least);
     let size = |share: f64| least + (share * more as f64) as u64;
@@ -54,7 +59,9 @@ pub fn follow_light<E: From<Error>>(
     }
     let sizes = PILOTS.iter().skip(1).map(|pilot| pilot.0).chain([1.0]);
     for ((_, share), next) in PILOTS.into_iter().zip(sizes) {
-        let Some(solution) = solve(&problem, share)? else { break };
+        let Some(solution) = solve(&problem, share)? else {
+            return Ok(Problem::new(problem.scene, Resolution::Elements(elements))?);
+        };
         let cut = adapt(&problem, &solution, size(next))?;
         problem = problem.cut_anew(&cut)?;
     }

@@ -21,7 +21,7 @@ mod slices;
 mod sparse;
 mod triangle;
 
-pub use cut::Cut;
+pub use cut::{Cut, MOST_ELEMENTS};
 pub use locate::{Point, TOGETHER};
 pub use lookup::{LANES, Lookup};
 pub use parts::{MOST_SPLITS, PARTS};

@@ -36,6 +36,15 @@ impl Resolution {
         (0..scene.triangles.len() as u32).map(|t| sides(scene, t)).sum()
     }
 
+    /// Most elements that `scene` is cut into, if that is what is said.
+    pub fn most(self, scene: &Scene) -> Option<u64> {
+        match self {
+            Resolution::Elements(elements) => Some(elements),
+            Resolution::Extra(more) => Some(Resolution::least(scene).saturating_add(more)),
+            Resolution::MaxEdge(_) => None,
+        }
+    }
+
     /// How to cut `scene`.
     ///
     /// # Errors
