@@ -8,12 +8,13 @@
 #   make growth                   time to a fixed accuracy from 10^4 to 10^6 elements, in two rooms
 #   make study-methods            all methods on one scene, error and time
 #   make study-smoothing          what taking noise out gains, and its bias, in three rooms
+#   make study-mesh               what a mesh that follows the light gains, in three rooms
 
 ISOLUX = target/release/isolux
 
 STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count speed
 
-.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods study-smoothing
+.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods study-smoothing study-mesh
 
 build:
 	cargo build --release --locked
@@ -52,3 +53,6 @@ study-methods:
 
 study-smoothing:
 	cargo run --release --locked -p isolux-testing --bin smoothing
+
+study-mesh:
+	cargo run --release --locked -p isolux-testing --bin mesh

@@ -18,6 +18,7 @@ mod interrupt;
 mod light_groups;
 mod list;
 mod merge;
+mod mesh;
 mod method;
 mod mix;
 mod numbers;

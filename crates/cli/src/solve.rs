@@ -6,6 +6,7 @@ use crate::drafts::Drafts;
 use crate::drive::Drive;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
+use crate::mesh::{Limits, MeshArguments, Meshed};
 use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
 use crate::progress::{Display, ProgressArguments};
@@ -91,6 +92,9 @@ pub struct Solve {
     /// Where something stands on a surface, or passes through it: cut the surface there, so that no light passes below, or ignore it
     #[arg(long, value_name = "WHAT", default_value = "cut")]
     contacts: Contacts,
+
+    #[command(flatten)]
+    mesh: MeshArguments,
 
     #[command(flatten)]
     budget: BudgetArguments,
@@ -202,13 +206,14 @@ impl Solve {
         let scene = input::scene(self.scene.as_deref().unwrap_or(Path::new("")), &self.units.options())?;
         self.picture.check_camera(&scene)?;
         let budget = self.budget.budget(&scene)?.unwrap_or(Budget::Heuristic);
-        display.stage("cutting the surfaces into elements");
         let resolution = self.resolution(&chosen);
         let detail = DETAIL * resolution.typical_edge(&scene);
         let scene = if self.contacts == Contacts::Cut { cut_at_contacts(scene, detail) } else { scene };
-        let problem = Problem::new(scene, resolution)?;
+        let limits = Limits { rays: self.budget.rays, time: self.budget.time, light: self.solver.light() };
+        let check = |problem: &Problem| self.solver.solver(&chosen, problem, budget).map(drop);
+        let Meshed { problem, budget, took } = self.mesh.cut(scene, resolution, budget, limits, display, check)?;
         let solver = self.solver.solver(&chosen, &problem, budget)?;
-        Ok(Checkpoint { problem, solver, clock: Clock { limit: self.budget.time, ..Clock::default() } })
+        Ok(Checkpoint { problem, solver, clock: Clock { solved: took, limit: self.budget.time } })
     }
 
     fn resolution(&self, chosen: &Chosen) -> Resolution {

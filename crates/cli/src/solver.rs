@@ -85,6 +85,11 @@ impl Chosen {
 }
 
 impl SolverArguments {
+    /// Which light is asked for.
+    pub fn light(&self) -> LightPart {
+        self.light.unwrap_or_default()
+    }
+
     /// The method that was asked for, before there is anything to solve.
     ///
     /// # Errors

@@ -81,6 +81,8 @@ fn bad_usage_is_explained() {
         (&["solve", "box", "--error", "1%", "--method", "gauss-seidel"], "no --error"),
         (&["solve", "box", "--elements", "9", "--max-edge", "1"], "cannot be used with"),
         (&["solve", "box", "--replicates", "3"], "at least 8"),
+        (&["solve", "box", "--max-edge", "1", "--mesh", "adaptive"], "--elements"),
+        (&["solve", "box", "--mesh", "fine"], "adaptive"),
         (&["solve", "box", "--max-edge", "-1"], "max-edge"),
         (&["solve", "box", "--max-edge", "0"], "positive length"),
         (&["solve", "box", "--elements", "1e12"], "more than"),

@@ -123,6 +123,26 @@ fn elements_of_any_kind_can_be_asked_for() {
 }
 
 #[test]
+fn the_mesh_follows_the_light_and_not_the_seed_or_the_method() {
+    let folder = Folder::new();
+    let solve = |name: &str, arguments: &[&str]| {
+        let all = ["solve", "cornell-box", "--elements", "3000", "--rays", "300k", "--json", "-o", name];
+        folder.json(&with(&all, arguments))
+    };
+    let adaptive = solve("a.isolux", &[]);
+    let uniform = solve("u.isolux", &["--mesh", "uniform"]);
+    let elements = |summary: &serde_json::Value| summary["elements"].as_u64().unwrap();
+    assert!((2700..=3000).contains(&elements(&adaptive)) && elements(&uniform) <= 3000, "{adaptive}");
+    assert!(folder.fails(2, &["compare", "a.isolux", "u.isolux"]).contains("different elements"));
+    // A tenth of the rays finds the mesh.
+    assert!(adaptive["rays"].as_u64() < uniform["rays"].as_u64());
+    solve("b.isolux", &["--seed", "2"]);
+    solve("c.isolux", &["--method", "stochastic-jacobi"]);
+    folder.prints(&["merge", "a.isolux", "b.isolux", "-o", "m.isolux"]);
+    folder.prints(&["compare", "a.isolux", "c.isolux"]);
+}
+
+#[test]
 fn a_solve_ends_when_it_is_as_accurate_as_was_asked_for() {
     let folder = Folder::new();
     let solve =

@@ -5,6 +5,7 @@
 //! (see ARCHITECTURE.md). Units are SI and photometric throughout: metres, lumens, lux (lm/m²), candela.
 
 mod accuracy;
+pub mod adaptive;
 mod certainty;
 pub mod choice;
 pub mod compare;

@@ -36,6 +36,15 @@ impl Problem {
         Ok(Problem { scene, mesh, geometry })
     }
 
+    /// The same scene, cut as `cut` says.
+    ///
+    /// # Errors
+    /// Those of [`ElementMesh::with_cut`].
+    pub fn cut_anew(self, cut: &Cut) -> Result<Problem, Error> {
+        let mesh = ElementMesh::with_cut(&self.scene, cut)?;
+        Ok(Problem { mesh, ..self })
+    }
+
     /// Number of the object of the scene on which element `e` lies.
     pub fn object(&self, e: u32) -> u32 {
         self.scene.triangles[self.mesh.triangle(e) as usize].object

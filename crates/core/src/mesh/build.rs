@@ -2,6 +2,7 @@
 
 use super::average::Averages;
 use super::cut::Cut;
+use super::parts::PARTS;
 use super::slices::Slices;
 use super::sparse::SparseColors;
 use super::{ElementMesh, Patch, Resolution, Surface, cells, morton, triangle};
@@ -32,41 +33,50 @@ impl ElementMesh {
         let mut mesh = ElementMesh {
             surfaces: Vec::with_capacity(cut.slices.len()),
             patches: Vec::with_capacity(cut.divisions.len()),
+            parts: Vec::new(),
             patch: Vec::with_capacity(total),
             reflectivity: Vec::with_capacity(total),
             emission: SparseColors::default(),
         };
-        let mut divisions = cut.divisions.iter();
-        for (t, &slices) in cut.slices.iter().enumerate() {
-            let divisions = divisions.by_ref().take(slices.patch_count() as usize);
-            mesh.push_triangle(scene, t as u32, slices, divisions.copied());
+        (0..).zip(&cut.slices).for_each(|(t, &slices)| mesh.push_triangle(scene, t, slices));
+        let mut divisions = cut.divisions.iter().copied();
+        for t in 0..mesh.surfaces.len() {
+            mesh.divide_triangle(triangle::surface_area(scene, t as u32), t, &mut divisions);
         }
         let averages = Averages::new(scene);
         for t in morton::order(scene) {
-            let Surface { first_patch, slices, .. } = mesh.surfaces[t as usize];
-            (first_patch..first_patch + slices.patch_count()).for_each(|patch| mesh.push_elements(&averages, patch));
+            mesh.surfaces[t as usize].patches().for_each(|patch| mesh.push_elements(&averages, patch));
         }
         mesh.check_finite()?;
         Ok(mesh)
     }
 
     /// A triangle and its patches, in the order of the scene.
-    fn push_triangle(&mut self, scene: &Scene, t: u32, slices: Slices, divisions: impl Iterator<Item = u16>) {
+    fn push_triangle(&mut self, scene: &Scene, t: u32, slices: Slices) {
         let first_patch = self.patches.len() as u32;
-        let area = triangle::surface_area(scene, t);
-        for (k, divisions) in divisions.enumerate() {
-            let element_area = area * slices.area_share(k as u32) / f64::from(cells::count(divisions));
-            self.patches.push(Patch { triangle: t, first_element: 0, divisions, element_area: element_area as f32 });
-        }
+        self.patches.extend((0..slices.patch_count()).map(|_| Patch { triangle: t, ..Patch::NONE }));
         let (two_sided, normal) = (scene.material_of(t).two_sided, triangle::normal(scene.corners(t)));
         self.surfaces.push(Surface { first_patch, slices, two_sided, normal });
+    }
+
+    /// Divides the patches of triangle `t` of `area` [m²].
+    fn divide_triangle(&mut self, area: f64, t: usize, divisions: &mut impl Iterator<Item = u16>) {
+        let Surface { first_patch, slices, .. } = self.surfaces[t];
+        for k in 0..slices.patch_count() {
+            self.divide(first_patch + k, area * slices.area_share(k), divisions);
+        }
     }
 
     /// The elements of a patch, in the order of their numbers.
     fn push_elements(&mut self, averages: &Averages, patch: u32) {
         let first = self.patch.len();
-        let Patch { triangle, divisions, .. } = self.patches[patch as usize];
-        self.patches[patch as usize].first_element = first as u32;
+        let whole = &mut self.patches[patch as usize];
+        if whole.is_split() {
+            let parts = whole.first..whole.first + PARTS;
+            return parts.for_each(|part| self.push_elements(averages, part));
+        }
+        whole.first = first as u32;
+        let Patch { triangle, divisions, .. } = *whole;
         for cell in 0..cells::count(divisions) {
             let corners = cells::corners(cell, divisions).map(|uv| self.on_triangle(patch, uv));
             let (reflectivity, emission) = averages.over_cell(triangle, corners);

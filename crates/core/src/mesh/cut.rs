@@ -1,6 +1,7 @@
-//! How the triangles of a scene are cut: across into slices, and each patch regularly.
+//! How the triangles of a scene are cut: across into slices, and each patch regularly, or into four and these again.
 
 use super::cells;
+use super::parts::{MOST_SPLITS, PARTS};
 use super::slices::Slices;
 use crate::Error;
 use crate::scene::Scene;
@@ -13,7 +14,8 @@ pub const MOST_ELEMENTS: u64 = u32::MAX as u64 - 1;
 pub struct Cut {
     /// For every triangle.
     pub slices: Vec<Slices>,
-    /// For every patch, triangle by triangle: the number m of divisions, which make m² elements a side.
+    /// For every patch, triangle by triangle: the number m of divisions, which make m² elements a side; or 0, and then the same for
+    /// the four parts into which it is split (see [`super::parts`]).
     pub divisions: Vec<u16>,
 }
 
@@ -33,15 +35,18 @@ impl Cut {
         if self.slices.len() != scene.triangles.len() || !self.slices.iter().all(|s| s.is_valid()) {
             return parameter(self.slices.len(), "slices are needed for each triangle");
         }
-        let patches: u64 = self.slices.iter().map(|s| u64::from(s.patch_count())).sum();
-        if self.divisions.len() as u64 != patches || self.divisions.contains(&0) {
-            return parameter(self.divisions.len(), "one number of divisions from 1 is needed for each patch");
-        }
-        let mut divisions = self.divisions.iter();
+        let mut divisions = self.divisions.iter().copied();
         let mut asked = 0u64;
-        for (t, slices) in self.slices.iter().enumerate() {
-            let patches = divisions.by_ref().take(slices.patch_count() as usize);
-            asked += sides(scene, t as u32) * patches.map(|&m| u64::from(cells::count(m))).sum::<u64>();
+        for (t, slices) in (0..).zip(&self.slices) {
+            for _ in 0..slices.patch_count() {
+                let Some(elements) = elements_of_patch(&mut divisions) else {
+                    return parameter(self.divisions.len(), "divisions are needed for each patch, or for its parts");
+                };
+                asked = asked.saturating_add(sides(scene, t).saturating_mul(elements));
+            }
+        }
+        if divisions.next().is_some() {
+            return parameter(self.divisions.len(), "there are divisions of more patches than there are");
         }
         if asked > MOST_ELEMENTS {
             Err(Error::TooManyElements { asked, limit: MOST_ELEMENTS })
@@ -49,6 +54,26 @@ impl Cut {
             Ok(asked as usize)
         }
     }
+}
+
+/// Elements a side of the patch whose divisions come next; `None` if they end before the patch does, or it is split too often.
+fn elements_of_patch(divisions: &mut impl Iterator<Item = u16>) -> Option<u64> {
+    let mut elements = 0u64;
+    // How many patches are still to come at each depth.
+    let mut left = vec![1];
+    while let Some(here) = left.last_mut() {
+        if *here == 0 {
+            left.pop();
+            continue;
+        }
+        *here -= 1;
+        match divisions.next()? {
+            0 if left.len() > MOST_SPLITS => return None,
+            0 => left.push(PARTS),
+            m => elements = elements.saturating_add(u64::from(cells::count(m))),
+        }
+    }
+    Some(elements)
 }
 
 /// Number of sides of triangle `t` that have elements.

@@ -2,7 +2,7 @@
 //!
 //! A point leads to its triangle, which leads to its patch: two tables, and with rays that end here and there both are read in
 //! no order. One point after the other, each reading waits for memory. So each table is read for all points before anything is
-//! computed: then the processor waits for many readings at once.
+//! computed: then the processor waits for many readings at once. Patches that are split are gone down together, too.
 
 use super::{ElementMesh, Patch, Surface, cells};
 use glam::{Vec2, Vec3};
@@ -42,11 +42,18 @@ impl ElementMesh {
         for (patch, &(number, _)) in patches.iter_mut().zip(&on_patch[..count]) {
             *patch = self.patches[number as usize];
         }
+        while patches[..count].iter().any(Patch::is_split) {
+            let split = patches[..count].iter_mut().zip(&mut on_patch).filter(|(patch, _)| patch.is_split());
+            for (patch, on_patch) in split {
+                *on_patch = patch.part_at(on_patch.1);
+                *patch = self.patches[on_patch.0 as usize];
+            }
+        }
         for (k, (surface, patch)) in surfaces[..count].iter().zip(&patches).enumerate() {
             let (uv, back) = (on_patch[k].1, point(k).back);
             let (cell, within) = cells::locate(uv, patch.divisions);
             let offset = if back { cells::count(patch.divisions) } else { 0 };
-            each(k, (surface.two_sided || !back).then_some((patch.first_element + offset + cell, within)));
+            each(k, (surface.two_sided || !back).then_some((patch.first + offset + cell, within)));
         }
     }
 }
@@ -57,7 +64,7 @@ impl Surface {
 }
 
 impl Patch {
-    const NONE: Patch = Patch { triangle: 0, first_element: 0, divisions: 1, element_area: 0.0 };
+    pub(super) const NONE: Patch = Patch { triangle: 0, first: 0, divisions: 1, element_area: 0.0 };
 }
 
 #[cfg(test)]

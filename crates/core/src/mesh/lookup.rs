@@ -14,6 +14,7 @@ pub const LANES: usize = 8;
 /// One triangle, ready to be asked for elements.
 #[derive(Clone, Copy, Debug)]
 pub struct Lookup<'a> {
+    mesh: &'a ElementMesh,
     slices: Slices,
     patches: &'a [Patch],
     two_sided: bool,
@@ -26,7 +27,7 @@ impl ElementMesh {
         let surface = &self.surfaces[triangle as usize];
         let first = surface.first_patch as usize;
         let patches = &self.patches[first..first + surface.slices.patch_count() as usize];
-        Lookup { slices: surface.slices, patches, two_sided: surface.two_sided }
+        Lookup { mesh: self, slices: surface.slices, patches, two_sided: surface.two_sided }
     }
 }
 
@@ -40,13 +41,18 @@ impl Lookup<'_> {
     /// is any, has a number that is greater by the second result.
     #[inline]
     pub fn front(&self, uv: Vec2) -> (u32, u32) {
-        let (patch, uv) = if let [patch] = self.patches {
+        let (mut patch, mut uv) = if let [patch] = self.patches {
             (patch, uv)
         } else {
             let (patch, uv) = self.slices.locate(uv);
             (&self.patches[patch as usize], uv)
         };
-        (patch.first_element + cells::at(uv, patch.divisions), cells::count(patch.divisions))
+        while patch.is_split() {
+            let part;
+            (part, uv) = patch.part_at(uv);
+            patch = &self.mesh.patches[part as usize];
+        }
+        (patch.first + cells::at(uv, patch.divisions), cells::count(patch.divisions))
     }
 }
 
@@ -74,13 +80,19 @@ impl ElementMesh {
     }
 
     /// Second stage, for points of any triangles: into `front` the element on the front, and into `further` by how much the number
-    /// of the one on the back, if there is any, is greater. Patches without a meaning have some elements.
+    /// of the one on the back, if there is any, is greater. Where a patch is split x and y become those of its part. Patches without
+    /// a meaning have some elements.
     #[inline(always)]
-    pub fn fronts_at(&self, patch: &[u32], [x, y]: [&[f32]; 2], front: &mut [u32], further: &mut [u32]) {
-        for ((front, further), patch) in front.iter_mut().zip(&mut *further).zip(patch) {
-            let patch =
-                self.patches.get(*patch as usize).map(|patch| (patch.first_element, u32::from(patch.divisions)));
-            (*front, *further) = patch.unwrap_or((0, 1));
+    pub fn fronts_at(&self, patch: &[u32], [x, y]: [&mut [f32]; 2], front: &mut [u32], further: &mut [u32]) {
+        let within = x.iter_mut().zip(&mut *y);
+        for (((front, further), &patch), (x, y)) in front.iter_mut().zip(&mut *further).zip(patch).zip(within) {
+            let mut found = self.patches.get(patch as usize);
+            while let Some(split) = found.filter(|patch| patch.is_split()) {
+                let (part, uv) = split.part_at(Vec2::new(*x, *y));
+                (*x, *y) = (uv.x, uv.y);
+                found = self.patches.get(part as usize);
+            }
+            (*front, *further) = found.map_or((0, 1), |patch| (patch.first, u32::from(patch.divisions)));
         }
         let out = front.as_chunks_mut::<LANES>().0.iter_mut().zip(further.as_chunks_mut::<LANES>().0);
         for ((x, y), (front, further)) in x.as_chunks::<LANES>().0.iter().zip(y.as_chunks::<LANES>().0).zip(out) {
@@ -132,7 +144,7 @@ mod tests {
             let v: [f32; 24] = from_fn(|k| ((triangle as usize + k) as f32 * 0.414_214).fract() * (1.0 - u[k]));
             let ([mut patch, mut front, mut further], [mut x, mut y]) = ([[0; 24]; 3], [[0.0; 24]; 2]);
             mesh.patches_at(triangle, [&u, &v], &mut patch, [&mut x, &mut y]);
-            mesh.fronts_at(&patch, [&x, &y], &mut front, &mut further);
+            mesh.fronts_at(&patch, [&mut x, &mut y], &mut front, &mut further);
             let lookup = mesh.lookup(triangle);
             same += (0..24).filter(|&k| lookup.front(Vec2::new(u[k], v[k])) == (front[k], further[k])).count();
         }

@@ -1,8 +1,8 @@
 //! Elements: the small pieces of surface that carry one radiosity each.
 //!
 //! Surfaces are traced, elements are scored. A triangle is one *patch*, or if it is a needle several (see [`slices`]); a patch
-//! with `m` divisions is cut into `m²` congruent elements (see [`cells`]). So a hit's barycentric coordinates lead to its element in
-//! O(1), and area and normal need no storage of their own. A two-sided triangle has two sets of elements back to back. Elements
+//! with `m` divisions is cut into `m²` congruent elements (see [`cells`]), or split into four patches (see [`parts`]). So a hit's
+//! barycentric coordinates lead to its element in O(1), or O(depth) where the mesh follows the light, and area and normal need no storage of their own. A two-sided triangle has two sets of elements back to back. Elements
 //! are numbered triangle by triangle along a space-filling curve, so neighbouring numbers are neighbours in space: rays shot
 //! in the order of elements have sorted origins.
 
@@ -15,27 +15,35 @@ mod locate;
 mod lookup;
 mod mip;
 mod morton;
+mod parts;
 mod resolution;
 mod slices;
 mod sparse;
 mod triangle;
 
-pub use cut::Cut;
+pub use cut::{Cut, MOST_ELEMENTS};
 pub use locate::{Point, TOGETHER};
 pub use lookup::{LANES, Lookup};
+pub use parts::{MOST_SPLITS, PARTS};
 pub use resolution::Resolution;
+pub(crate) use resolution::slices;
+pub use slices::Slices;
+pub(crate) use triangle::surface_area;
 
 use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
 use glam::{Vec2, Vec3};
-use slices::Slices;
+use parts::Part;
 use sparse::SparseColors;
 
 /// Elements of all triangles, struct of arrays, 16 bytes an element and 12 more if it emits light.
 #[derive(Clone, Debug)]
 pub struct ElementMesh {
     surfaces: Vec<Surface>,
+    /// Those of each triangle in turn, then four for each that is split.
     patches: Vec<Patch>,
+    /// Where the patches lie that are parts of others, the last ones.
+    parts: Vec<Part>,
     /// Patch of every element.
     patch: Vec<u32>,
     reflectivity: Vec<Rgb>,
@@ -51,11 +59,13 @@ struct Surface {
     normal: Vec3,
 }
 
-/// A part of a triangle that is cut regularly: first the elements of its front, then those of its back.
+/// A part of a triangle that is cut regularly: first the elements of its front, then those of its back; or split.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
     triangle: u32,
-    first_element: u32,
+    /// The first of its elements, or of the parts into which it is split.
+    first: u32,
+    /// None if it is split.
     divisions: u16,
     /// Area of each element [m²].
     element_area: f32,
@@ -120,8 +130,8 @@ impl ElementMesh {
     }
 
     pub fn place(&self, e: u32) -> Place {
-        let (patch, Patch { triangle, first_element, divisions, .. }) = (self.patch[e as usize], *self.patch_of(e));
-        let (offset, per_side) = (e - first_element, cells::count(divisions));
+        let (patch, Patch { triangle, first, divisions, .. }) = (self.patch[e as usize], *self.patch_of(e));
+        let (offset, per_side) = (e - first, cells::count(divisions));
         let back = offset >= per_side;
         Place { triangle, patch, back, cell: if back { offset - per_side } else { offset } }
     }
@@ -140,22 +150,23 @@ impl ElementMesh {
             return None;
         }
         let (patch, uv) = surface.slices.locate(uv);
-        let patch = &self.patches[(surface.first_patch + patch) as usize];
+        let (patch, uv) = self.leaf_at(surface.first_patch + patch, uv);
+        let patch = &self.patches[patch as usize];
         let (cell, within) = cells::locate(uv, patch.divisions);
         let offset = if back { cells::count(patch.divisions) } else { 0 };
-        Some((patch.first_element + offset + cell, within))
+        Some((patch.first + offset + cell, within))
     }
 
-    /// The patch at barycentric coordinates `uv` of `triangle`, and the barycentric coordinates on it.
+    /// The patch with elements at barycentric coordinates `uv` of `triangle`, and the barycentric coordinates on it.
     pub fn patch_at(&self, triangle: u32, uv: Vec2) -> (u32, Vec2) {
         let surface = &self.surfaces[triangle as usize];
         let (patch, within) = surface.slices.locate(uv);
-        (surface.first_patch + patch, within)
+        self.leaf_at(surface.first_patch + patch, within)
     }
 
-    /// Numbers of all patches.
-    pub fn patches(&self) -> std::ops::Range<u32> {
-        0..self.patches.len() as u32
+    /// Numbers of the patches that have elements, in ascending order: all but those that are split.
+    pub fn patches(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..).zip(&self.patches).filter(|(_, patch)| !patch.is_split()).map(|(number, _)| number)
     }
 
     /// Triangle on which `patch` lies.
@@ -163,16 +174,15 @@ impl ElementMesh {
         self.patches[patch as usize].triangle
     }
 
-    /// Number of divisions along each edge of `patch`.
+    /// Number of divisions along each edge of `patch`; 0 if it is split.
     pub fn divisions(&self, patch: u32) -> u16 {
         self.patches[patch as usize].divisions
     }
 
     /// Barycentric coordinates on the triangle of the point `uv` of `patch`.
     pub fn on_triangle(&self, patch: u32, uv: Vec2) -> Vec2 {
-        let surface = &self.surfaces[self.triangle_of_patch(patch) as usize];
-        let [a, b, c] = surface.slices.corners(patch - surface.first_patch);
-        a + uv.x * (b - a) + uv.y * (c - a)
+        let [corner, along, across] = self.frame(patch);
+        corner + uv.x * along + uv.y * across
     }
 
     /// Barycentric coordinates on its triangle of the three corners of element `e`.
@@ -184,10 +194,8 @@ impl ElementMesh {
     /// Where element `e` lies, and in barycentric coordinates on its triangle: a corner, and the edges from it.
     pub fn place_and_edges(&self, e: u32) -> (Place, [Vec2; 3]) {
         let place = self.place(e);
-        let surface = &self.surfaces[place.triangle as usize];
         let (corner, length) = cells::frame(place.cell, self.divisions(place.patch));
-        let [a, b, c] = surface.slices.corners(place.patch - surface.first_patch);
-        let (along, across) = (b - a, c - a);
+        let [a, along, across] = self.frame(place.patch);
         (place, [a + corner.x * along + corner.y * across, length * along, length * across])
     }
 
@@ -204,10 +212,8 @@ impl ElementMesh {
         let mut slices = Vec::with_capacity(self.surfaces.len());
         let mut divisions = Vec::with_capacity(self.patches.len());
         for surface in &self.surfaces {
-            let first = surface.first_patch as usize;
-            let patches = &self.patches[first..first + surface.slices.patch_count() as usize];
             slices.push(surface.slices);
-            divisions.extend(patches.iter().map(|patch| patch.divisions));
+            surface.patches().for_each(|patch| self.divisions_below(patch, &mut divisions));
         }
         Cut { slices, divisions }
     }
@@ -224,7 +230,8 @@ impl ElementMesh {
     /// Areas [m²] of all elements, and how many in turn have each.
     pub fn areas(&self) -> impl Iterator<Item = (f32, u32)> + Clone + '_ {
         let sides = |patch: &Patch| if self.is_two_sided(patch.triangle) { 2 } else { 1 };
-        self.patches.iter().map(move |patch| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
+        let patches = self.patches.iter().filter(|patch| !patch.is_split());
+        patches.map(move |patch| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
     }
 
     /// Total emitted flux of the surfaces [lm] per channel.
@@ -243,5 +250,12 @@ impl ElementMesh {
 
     fn patch_of(&self, e: u32) -> &Patch {
         &self.patches[self.patch[e as usize] as usize]
+    }
+}
+
+impl Surface {
+    /// Numbers of the patches that are no part of another.
+    fn patches(&self) -> std::ops::Range<u32> {
+        self.first_patch..self.first_patch + self.slices.patch_count()
     }
 }

@@ -31,17 +31,28 @@ impl Default for Resolution {
 const MOST_DIVISIONS: f64 = 30_000.0;
 
 impl Resolution {
-    /// About as long [m] are the edges of elements that are not smaller because their triangle is.
+    /// Number of the sides of all triangles of `scene`, the fewest elements there can be.
+    pub fn least(scene: &Scene) -> u64 {
+        (0..scene.triangles.len() as u32).map(|t| sides(scene, t)).sum()
+    }
+
+    /// Most elements that `scene` is cut into, if that is what is said.
+    pub fn most(self, scene: &Scene) -> Option<u64> {
+        match self {
+            Resolution::Elements(elements) => Some(elements),
+            Resolution::Extra(more) => Some(Resolution::least(scene).saturating_add(more)),
+            Resolution::MaxEdge(_) => None,
+        }
+    }
+
+    /// About as long [m] are the edges of equal elements that are not smaller because their triangle is.
     pub fn typical_edge(self, scene: &Scene) -> f32 {
-        let of_triangle = |t: u32| (surface_area(scene, t) * sides(scene, t) as f64, sides(scene, t));
-        let all = (0..scene.triangles.len() as u32).map(of_triangle);
-        let (area, least) = all.fold((0.0, 0), |sum, (area, sides)| (sum.0 + area, sum.1 + sides));
-        let elements = match self {
-            Resolution::MaxEdge(edge) => return edge,
-            Resolution::Elements(elements) => elements,
-            Resolution::Extra(more) => least.saturating_add(more),
-        };
-        (2.0 * area / elements.max(1) as f64).sqrt() as f32
+        let of_triangle = |t: u32| surface_area(scene, t) * sides(scene, t) as f64;
+        let area: f64 = (0..scene.triangles.len() as u32).map(of_triangle).sum();
+        match self {
+            Resolution::MaxEdge(edge) => edge,
+            _ => (2.0 * area / self.most(scene).unwrap_or(1).max(1) as f64).sqrt() as f32,
+        }
     }
 
     /// How to cut `scene`.
@@ -54,10 +65,7 @@ impl Resolution {
                 Err(Error::Parameter { name: "elements", value: "0".into(), allowed: "ask for at least one element" })
             }
             Resolution::Elements(target) => cut_for_target(scene, target),
-            Resolution::Extra(more) => {
-                let least: u64 = (0..scene.triangles.len() as u32).map(|t| sides(scene, t)).sum();
-                cut_for_target(scene, least.saturating_add(more))
-            }
+            Resolution::Extra(more) => cut_for_target(scene, Resolution::least(scene).saturating_add(more)),
             Resolution::MaxEdge(edge) if edge > 0.0 && edge.is_finite() => {
                 let edge = f64::from(edge);
                 let limited = |corners: [Vec3; 3]| divisions(longest_edge(corners) / edge);
@@ -120,7 +128,7 @@ fn elements(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16 + Sync
 
 /// Slices as high as the shortest edge, or if that is much less than `edge`, such that each half of one has no edge longer
 /// than `edge`.
-fn slices(corners: [Vec3; 3], edge: f64) -> Slices {
+pub fn slices(corners: [Vec3; 3], edge: f64) -> Slices {
     let (shortest, length) = (shortest_edge(corners), longest_edge(corners));
     let count = if shortest > FRAC_1_SQRT_2 * edge {
         (length / shortest).floor()

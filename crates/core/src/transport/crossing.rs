@@ -97,7 +97,7 @@ impl Cross for ElementMesh {
             let within = [&mut x[at.clone()], &mut y[at.clone()]];
             self.patches_at(met.triangle, [&u[at.clone()], &v[at.clone()]], &mut patch[at], within);
         }
-        self.fronts_at(patch, [x, y], front, further);
+        self.fronts_at(patch, [&mut **x, &mut **y], front, further);
         for met in *triangles {
             let at = met.points.clone();
             let ends = front[at.clone()].iter().zip(&further[at.clone()]);

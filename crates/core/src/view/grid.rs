@@ -30,10 +30,10 @@ impl Side {
 
 impl Grid {
     pub fn new(mesh: &ElementMesh) -> Grid {
-        let mut first = Vec::with_capacity(mesh.patches().len() + 1);
-        let mut total = 0;
+        let (mut first, mut total) = (Vec::new(), 0);
         for patch in mesh.patches() {
-            first.push(total);
+            // Those in between are split, and have no points.
+            first.resize(patch as usize + 1, total);
             total += per_side(mesh.divisions(patch)) * backs(mesh, patch).len();
         }
         first.push(total);

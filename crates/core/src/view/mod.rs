@@ -10,10 +10,10 @@
 pub mod camera_rays;
 mod contacts;
 mod cover;
-mod crease;
+pub(crate) mod crease;
 mod default_view;
 mod grid;
-mod neighbours;
+pub(crate) mod neighbours;
 pub mod picture;
 mod plastic;
 mod seams;
@@ -21,8 +21,8 @@ pub mod smooth;
 pub mod surface_light;
 pub mod tone;
 pub mod vertex_field;
-mod vertices;
-mod weld;
+pub(crate) mod vertices;
+pub(crate) mod weld;
 
 pub use picture::{Picture, ViewOptions, exposure, render, render_field};
 pub use seams::EdgePoints;
@@ -31,7 +31,7 @@ pub use tone::Exposure;
 pub use vertex_field::VertexField;
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use crate::Solution;
     use crate::math::Rgb;
 

@@ -143,7 +143,7 @@ fn vertex_mean(elements: &[u32], values: &[Rgb], weight: impl Fn(u32) -> f32) ->
 mod tests {
     use super::super::plastic;
     use super::*;
-    use crate::mesh::Cut;
+    use crate::mesh::{Cut, Slices};
     use crate::scene::{Material, Object, Scene, Triangle, Vertex};
     use crate::view::tests::solution;
 
@@ -164,7 +164,11 @@ mod tests {
     }
 
     fn field(scene: Scene, divisions: &[u16], irradiance: impl Fn(Vec3) -> f32) -> (Problem, VertexField) {
-        let problem = Problem::with_cut(scene, &Cut::regular(divisions)).unwrap();
+        field_of_cut(scene, &Cut::regular(divisions), irradiance)
+    }
+
+    fn field_of_cut(scene: Scene, cut: &Cut, irradiance: impl Fn(Vec3) -> f32) -> (Problem, VertexField) {
+        let problem = Problem::with_cut(scene, cut).unwrap();
         let mean = |e: u32| {
             let at = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
             Rgb::grey(irradiance(problem.geometry.surface(problem.mesh.triangle(e), at).0))
@@ -193,6 +197,38 @@ mod tests {
                 assert!((one - other).abs() < bend, "{fine} {coarse} at {s}: {one} {other}");
             }
         }
+    }
+
+    #[test]
+    fn a_flat_wall_has_no_seam_where_patches_are_split() {
+        // Each half split unevenly, twice and three times; beside whole parts that are cut finer and coarser.
+        let split = vec![0, 0, 1, 0, 2, 1, 4, 1, 1, 2, 4, 1, 1, 0, 0, 1, 1, 1, 2, 1, 1, 8];
+        let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: split };
+        let (problem, field) = field_of_cut(square(), &cut, |p| 10.0 + 3.0 * p.x - p.y + 2.0 * (9.0 * p.x * p.y).sin());
+        let mesh = &problem.mesh;
+        let light = |triangle, uv| field.irradiance_at(&problem, triangle, uv, false).g;
+        let (mut inside, mut between) = (0, 0);
+        for e in mesh.elements() {
+            let (triangle, corners) = (mesh.triangle(e), mesh.corners(e));
+            let middle = corners.iter().sum::<Vec2>() / 3.0;
+            for (k, j) in (0..3).flat_map(|k| (1..16).map(move |j| (k, j as f32 / 16.0))) {
+                let on_edge = corners[k].lerp(corners[(k + 1) % 3], j);
+                let away = (on_edge - middle) * 1e-4;
+                let [near, beyond] = [on_edge - away, on_edge + away];
+                if beyond.min_element() > 0.0 && beyond.x + beyond.y < 1.0 {
+                    inside += 1;
+                    let jump = (light(triangle, near) - light(triangle, beyond)).abs();
+                    assert!(jump < 5e-3, "{e} {on_edge}: {jump}");
+                }
+            }
+        }
+        for k in 0..=1000 {
+            let s = k as f32 / 1000.0;
+            between += 1;
+            let jump = (light(0, Vec2::new(0.0, s)) - light(1, Vec2::new(s, 0.0))).abs();
+            assert!(jump < 1e-3, "{s}: {jump}");
+        }
+        assert!(inside > 1000 && between > 1000);
     }
 
     #[test]

@@ -1,10 +1,14 @@
 use super::*;
 use isolux_core::Solution;
-use isolux_core::mesh::Cut;
+use isolux_core::mesh::{Cut, Slices};
 use isolux_core::scene::{Material, Scene, Triangle, Vertex};
 
 /// Two halves of a two-sided unit square with a texture of one dark texel; `light` [lux] in front and behind.
 fn square(divisions: &[u16], light: [f32; 2]) -> Vec<u8> {
+    square_cut(&Cut::regular(divisions), light)
+}
+
+fn square_cut(cut: &Cut, light: [f32; 2]) -> Vec<u8> {
     let mut scene = Scene::default();
     let texture = Texture { image: 0, wrap_u: Wrap::Repeat, wrap_v: Wrap::ClampToEdge };
     scene.images.push(Image { name: "dark".into(), width: 1, height: 1, texels: vec![[100; 3]] });
@@ -15,7 +19,7 @@ fn square(divisions: &[u16], light: [f32; 2]) -> Vec<u8> {
     let halves = [[0, 1, 2], [0, 2, 3]];
     scene.triangles = (0..).zip(halves).map(|(source, vertices)| Triangle { vertices, object: 0, source }).collect();
     scene.cameras.push(Camera::looking_at("eye", Vec3::Z, Vec3::ZERO, 1.0));
-    let problem = Problem::with_cut(scene, &Cut::regular(divisions)).unwrap();
+    let problem = Problem::with_cut(scene, cut).unwrap();
     let light = |e| Rgb::grey(light[usize::from(problem.mesh.place(e).back)]);
     let irradiance: Vec<Rgb> = problem.mesh.elements().map(light).collect();
     let solution = Solution { std_error: irradiance.clone(), irradiance, ..Solution::default() };
@@ -69,6 +73,26 @@ fn edges_between_different_divisions_share_all_vertices() {
     }
     // Thirds and quarters cut the diagonal into six pieces, each with a face on either side.
     assert_eq!(edges.values().copied().collect::<Vec<_>>(), [2; 6]);
+}
+
+#[test]
+fn edges_of_split_patches_share_all_vertices() {
+    let split = vec![0, 0, 1, 0, 2, 1, 4, 1, 1, 2, 4, 1, 1, 0, 0, 1, 1, 1, 2, 1, 1, 8];
+    let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: split };
+    let (all, _) = faces(&square_cut(&cut, [20.0, 0.0]));
+    let key = |p: Vec3| ((p.x * 1e5).round() as i32, (p.y * 1e5).round() as i32);
+    let mut edges = std::collections::BTreeMap::new();
+    for face in &all {
+        for k in 0..3 {
+            let (a, b) = (key(face[k]), key(face[(k + 1) % 3]));
+            *edges.entry((a.min(b), a.max(b))).or_insert(0) += 1;
+        }
+    }
+    // Closed but for the border of the square: every edge has a face on either side.
+    let on_border = |((ax, ay), (bx, by)): ((i32, i32), (i32, i32))| {
+        [0, 100_000].iter().any(|side| (ax == *side && bx == *side) || (ay == *side && by == *side))
+    };
+    assert!(edges.len() > 100 && edges.iter().all(|(edge, faces)| *faces == if on_border(*edge) { 1 } else { 2 }));
 }
 
 #[test]
