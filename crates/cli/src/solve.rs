@@ -257,7 +257,8 @@ impl Solve {
 
     fn resolution(&self) -> Resolution {
         match (self.elements, self.max_edge) {
-            (Some(elements), _) => Resolution::Elements(elements),
+            (Some(elements), _) if self.method.deterministic().is_some() => Resolution::Elements(elements),
+            (Some(elements), _) => Resolution::Clustered(elements),
             (None, Some(edge)) => Resolution::MaxEdge(edge),
             (None, None) if self.method.deterministic().is_some() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
             (None, None) => Resolution::default(),

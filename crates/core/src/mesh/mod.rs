@@ -2,7 +2,8 @@
 //!
 //! Surfaces are traced, elements are scored. A triangle is one *patch*, or if it is a needle several (see [`slices`]); a patch
 //! with `m` divisions is cut into `m²` congruent elements (see [`cells`]). So a hit's barycentric coordinates lead to its element in
-//! O(1), and area and normal need no storage of their own. A two-sided triangle has two sets of elements back to back. Elements
+//! O(1), and area and normal need no storage of their own. Where triangles are smaller than elements should be, an element is a
+//! *cluster* of whole triangles instead (see [`clusters`]), each of which is a patch of one cell. A two-sided triangle has two sets of elements back to back. Elements
 //! are numbered triangle by triangle along a space-filling curve, so neighbouring numbers are neighbours in space: rays shot
 //! in the order of elements have sorted origins.
 
@@ -10,7 +11,9 @@ mod average;
 mod build;
 pub mod cells;
 mod clip;
+mod clusters;
 mod cut;
+mod grow;
 mod locate;
 mod lookup;
 mod mip;
@@ -20,6 +23,7 @@ mod slices;
 mod sparse;
 mod triangle;
 
+pub use clusters::{Cluster, Piece};
 pub use cut::Cut;
 pub use locate::{Point, TOGETHER};
 pub use lookup::{LANES, Lookup};
@@ -27,6 +31,7 @@ pub use resolution::Resolution;
 
 use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
+use clusters::Clusters;
 use glam::{Vec2, Vec3};
 use slices::Slices;
 use sparse::SparseColors;
@@ -36,7 +41,8 @@ use sparse::SparseColors;
 pub struct ElementMesh {
     surfaces: Vec<Surface>,
     patches: Vec<Patch>,
-    /// Patch of every element.
+    clusters: Clusters,
+    /// Patch of every element; of a cluster that of its largest triangle.
     patch: Vec<u32>,
     reflectivity: Vec<Rgb>,
     emission: SparseColors,
@@ -57,11 +63,11 @@ struct Patch {
     triangle: u32,
     first_element: u32,
     divisions: u16,
-    /// Area of each element [m²].
+    /// Area of each element [m²]; of a cluster that of all its triangles.
     element_area: f32,
 }
 
-/// Where an element lies on its triangle.
+/// Where an element lies on its triangle, or on one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     pub triangle: u32,
@@ -87,7 +93,7 @@ impl ElementMesh {
         0..self.len() as u32
     }
 
-    /// Triangle on which element `e` lies.
+    /// Triangle on which element `e` lies; the largest of a cluster, whose triangles all belong to one object.
     pub fn triangle(&self, e: u32) -> u32 {
         self.patch_of(e).triangle
     }
@@ -112,13 +118,15 @@ impl ElementMesh {
         self.emission(e) * self.area(e)
     }
 
-    /// Unit normal of the side on which the element lies (of the flat triangle; see [`crate::geometry::Geometry`] for curved surfaces).
+    /// Unit normal of the side on which the element lies (of the flat triangle, see [`crate::geometry::Geometry`] for curved surfaces;
+    /// of the largest of a cluster).
     pub fn normal(&self, e: u32) -> Vec3 {
         let place = self.place(e);
         let front = self.surfaces[place.triangle as usize].normal;
         if place.back { -front } else { front }
     }
 
+    /// Where element `e` lies; of a cluster its largest triangle, see [`ElementMesh::pieces`] for all.
     pub fn place(&self, e: u32) -> Place {
         let (patch, Patch { triangle, first_element, divisions, .. }) = (self.patch[e as usize], *self.patch_of(e));
         let (offset, per_side) = (e - first_element, cells::count(divisions));
@@ -142,6 +150,7 @@ impl ElementMesh {
         let (patch, uv) = surface.slices.locate(uv);
         let patch = &self.patches[(surface.first_patch + patch) as usize];
         let (cell, within) = cells::locate(uv, patch.divisions);
+        let within = self.clusters.piece(triangle).map_or(within, |piece| piece.within(within));
         let offset = if back { cells::count(patch.divisions) } else { 0 };
         Some((patch.first_element + offset + cell, within))
     }
@@ -175,13 +184,18 @@ impl ElementMesh {
         a + uv.x * (b - a) + uv.y * (c - a)
     }
 
-    /// Barycentric coordinates on its triangle of the three corners of element `e`.
+    /// Barycentric coordinates on its triangle of the three corners of element `e`; of a cluster those of its largest triangle.
     pub fn corners(&self, e: u32) -> [Vec2; 3] {
-        let Place { patch, cell, .. } = self.place(e);
+        self.corners_at(self.place(e))
+    }
+
+    /// Barycentric coordinates on its triangle of the three corners of a place.
+    pub fn corners_at(&self, Place { patch, cell, .. }: Place) -> [Vec2; 3] {
         cells::corners(cell, self.divisions(patch)).map(|uv| self.on_triangle(patch, uv))
     }
 
-    /// Where element `e` lies, and in barycentric coordinates on its triangle: a corner, and the edges from it.
+    /// Where element `e` lies, and in barycentric coordinates on its triangle: a corner, and the edges from it. For an element that is
+    /// no cluster.
     pub fn place_and_edges(&self, e: u32) -> (Place, [Vec2; 3]) {
         let place = self.place(e);
         let surface = &self.surfaces[place.triangle as usize];
@@ -191,12 +205,10 @@ impl ElementMesh {
         (place, [a + corner.x * along + corner.y * across, length * along, length * across])
     }
 
-    /// Barycentric coordinates on its triangle of the point of element `e` that belongs to `s` in the unit square;
+    /// Triangle, and barycentric coordinates on it, of the point of element `e` that belongs to `s` in the unit square;
     /// area preserving.
-    pub fn point(&self, e: u32, s: Vec2) -> Vec2 {
-        let [a, b, c] = self.corners(e);
-        let uv = square_to_triangle(s);
-        a + uv.x * (b - a) + uv.y * (c - a)
+    pub fn point(&self, e: u32, s: Vec2) -> (u32, Vec2) {
+        self.on_element(e, square_to_triangle(s))
     }
 
     /// How the triangles were cut: with it the same elements can be made again.
@@ -209,7 +221,7 @@ impl ElementMesh {
             slices.push(surface.slices);
             divisions.extend(patches.iter().map(|patch| patch.divisions));
         }
-        Cut { slices, divisions }
+        Cut { slices, divisions, leaders: self.clusters.leaders() }
     }
 
     pub fn is_two_sided(&self, triangle: u32) -> bool {
@@ -224,7 +236,10 @@ impl ElementMesh {
     /// Areas [m²] of all elements, and how many in turn have each.
     pub fn areas(&self) -> impl Iterator<Item = (f32, u32)> + Clone + '_ {
         let sides = |patch: &Patch| if self.is_two_sided(patch.triangle) { 2 } else { 1 };
-        self.patches.iter().map(move |patch| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
+        // Of the patches of a cluster only the one that stands for it.
+        let counts = |(number, patch): &(u32, &Patch)| self.patch[patch.first_element as usize] == *number;
+        let patches = (0..).zip(&self.patches).filter(counts);
+        patches.map(move |(_, patch)| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
     }
 
     /// Total emitted flux of the surfaces [lm] per channel.

@@ -1,6 +1,7 @@
 //! How finely each triangle is cut.
 
 use super::cut::{Cut, MOST_ELEMENTS, sides};
+use super::grow::Neighbourhood;
 use super::slices::Slices;
 use super::triangle::{height, longest_edge, shortest_edge};
 use crate::Error;
@@ -18,6 +19,9 @@ pub enum Resolution {
     MaxEdge(f32),
     /// One element for each side of every triangle, and this many more.
     Extra(u64),
+    /// As close to this number of elements as it comes from below, whatever the number of triangles: those much smaller than
+    /// elements are put together, as far as surfaces are smooth and connected.
+    Clustered(u64),
 }
 
 impl Default for Resolution {
@@ -37,10 +41,11 @@ impl Resolution {
     /// [`Error::TooManyElements`]; [`Error::Parameter`] for zero elements or an edge that is not positive.
     pub fn cut(self, scene: &Scene) -> Result<Cut, Error> {
         match self {
-            Resolution::Elements(0) => {
+            Resolution::Elements(0) | Resolution::Clustered(0) => {
                 Err(Error::Parameter { name: "elements", value: "0".into(), allowed: "ask for at least one element" })
             }
             Resolution::Elements(target) => cut_for_target(scene, target),
+            Resolution::Clustered(target) => cut_with_clusters(scene, target),
             Resolution::Extra(more) => {
                 let least: u64 = (0..scene.triangles.len() as u32).map(|t| sides(scene, t)).sum();
                 cut_for_target(scene, least.saturating_add(more))
@@ -64,24 +69,44 @@ impl Resolution {
     }
 }
 
-/// Bisects the edge length until the number of elements is as close below `target` as it gets.
+/// The cut whose number of elements is as close below `target` as it gets.
 fn cut_for_target(scene: &Scene, target: u64) -> Result<Cut, Error> {
     if target > MOST_ELEMENTS {
         return Err(Error::TooManyElements { asked: target, limit: MOST_ELEMENTS });
     }
-    let longest = (0..scene.triangles.len() as u32).map(|t| longest_edge(scene.corners(t))).fold(0.0, f64::max);
-    let (mut fine, mut coarse) = (longest / MOST_DIVISIONS, longest.max(f64::MIN_POSITIVE));
-    for _ in 0..40 {
-        let middle = (fine * coarse).sqrt();
-        if elements(scene, middle, |corners| economical(corners, middle)) > target {
-            fine = middle;
-        } else {
-            coarse = middle;
-        }
-    }
-    let cut = cut(scene, coarse, |corners| economical(corners, coarse));
+    let few = |edge: f64| elements(scene, edge, |corners| economical(corners, edge)) <= target;
+    let edge = least_edge(scene, 40, few);
+    let cut = cut(scene, edge, |corners| economical(corners, edge));
     cut.element_count(scene)?;
     Ok(cut)
+}
+
+/// The same with clusters. Their number falls with the edge as good as always: at worst there are a few elements fewer.
+fn cut_with_clusters(scene: &Scene, target: u64) -> Result<Cut, Error> {
+    let whole = cut_for_target(scene, target)?;
+    let neighbourhood = Neighbourhood::new(scene);
+    let clustered = |edge: f64| {
+        let cut = cut(scene, edge, |corners| economical(corners, edge));
+        Cut { leaders: neighbourhood.leaders(&cut, edge), ..cut }
+    };
+    let few = |edge: f64| clustered(edge).element_count(scene).is_ok_and(|count| count as u64 <= target);
+    let cut = clustered(least_edge(scene, 14, few));
+    Ok(if cut.leaders.is_empty() { whole } else { cut })
+}
+
+/// Bisects the edge length for the least that is long enough for `few` elements.
+fn least_edge(scene: &Scene, steps: u32, few: impl Fn(f64) -> bool) -> f64 {
+    let longest = (0..scene.triangles.len() as u32).map(|t| longest_edge(scene.corners(t))).fold(0.0, f64::max);
+    let (mut fine, mut coarse) = (longest / MOST_DIVISIONS, longest.max(f64::MIN_POSITIVE));
+    for _ in 0..steps {
+        let middle = (fine * coarse).sqrt();
+        if few(middle) {
+            coarse = middle;
+        } else {
+            fine = middle;
+        }
+    }
+    coarse
 }
 
 /// Cuts into slices about `edge` high, and every patch into as many divisions as `of_patch` says.
@@ -89,7 +114,7 @@ fn cut(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16) -> Cut {
     let slices: Vec<Slices> = (0..scene.triangles.len() as u32).map(|t| slices(scene.corners(t), edge)).collect();
     let patches = slices.iter().enumerate().flat_map(|(t, &slices)| patches(scene.corners(t as u32), slices));
     let divisions = patches.map(of_patch).collect();
-    Cut { slices, divisions }
+    Cut { slices, divisions, leaders: Vec::new() }
 }
 
 /// Number of elements of that cut; a triangle without an edge longer than `edge` is one.

@@ -1,6 +1,7 @@
 //! NumPy arrays in a ZIP archive; `numpy.load` reads them without pickle.
 //!
-//! With n elements and k objects: `vertices` (n, 3, 3) [m], corners counter-clockwise seen from the element's side;
+//! With n elements, k objects and p triangles that show the elements: `vertices` (p, 3, 3) [m], corners counter-clockwise seen from the
+//! element's side; `element` (p), the element that each triangle shows, which is 0, 1, 2 ... unless elements are made of several triangles;
 //! `area` (n) [m²]; `normal` (n, 3) of the side, in the middle of the element; `reflectivity`, `emission` [lm/m²],
 //! `irradiance` [lux], `std_error` [lux], `radiosity` [lm/m²], each (n, 3), red green blue; `object` (n), an index into
 //! `names` (k, text, cut off after 256 characters); `triangle` (n), its number in the scene file; `back` (n, boolean);
@@ -26,8 +27,11 @@ pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> 
     let n = mesh.len() as u64;
     let mut archive = Archive::new();
 
-    let corners = mesh.elements().flat_map(|e| elements::corners(problem, e)).flat_map(|p| p.to_array());
-    archive.floats("vertices", &[n, 3, 3], corners)?;
+    let pieces = elements::pieces(problem);
+    let p = pieces.clone().count() as u64;
+    let corners = pieces.clone().flat_map(|(_, place)| elements::corners(problem, place));
+    archive.floats("vertices", &[p, 3, 3], corners.flat_map(|p| p.to_array()))?;
+    archive.integers("element", p, pieces.map(|(e, _)| e))?;
     archive.floats("area", &[n], mesh.elements().map(|e| mesh.area(e)))?;
     let normals = mesh.elements().flat_map(|e| elements::centre(problem, e).1.to_array());
     archive.floats("normal", &[n, 3], normals)?;
