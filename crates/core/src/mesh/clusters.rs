@@ -161,3 +161,106 @@ impl ElementMesh {
         (place.triangle, corner + within.x * along + within.y * across)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+    use crate::mesh::Resolution;
+    use crate::scene::Material;
+    use crate::scene::builtin::shapes::Builder;
+    use glam::Vec3;
+
+    /// A ball and a bent sheet with two sides, in clusters of some ten triangles.
+    fn mesh() -> (Scene, ElementMesh) {
+        let mut builder = Builder::new("round");
+        let material = builder.material(Material { two_sided: true, ..Material::diffuse("", Rgb::new(0.2, 0.5, 0.8)) });
+        builder.object("ball", material);
+        builder.ball(Vec3::ZERO, 1.0, 48);
+        builder.object("sheet", material);
+        let steps: Vec<f32> = (0..=30).map(|k| (k as f32 / 30.0).powi(2)).collect();
+        builder.grid(&steps, &steps, |u, v| Vec3::new(2.0 + u, v, 0.2 * u * u), |_, _| true);
+        let scene = builder.finish();
+        let mesh = ElementMesh::new(&scene, Resolution::Clustered(800)).unwrap();
+        let clusters = mesh.elements().filter(|&e| mesh.cluster(e).is_some()).count();
+        assert!(clusters > 400 && mesh.len() <= 800, "{clusters} of {}", mesh.len());
+        (scene, mesh)
+    }
+
+    fn squares(n: u32) -> impl Iterator<Item = Vec2> {
+        (0..n * n).map(move |k| Vec2::new((k % n) as f32 + 0.5, (k / n) as f32 + 0.5) / n as f32)
+    }
+
+    #[test]
+    fn points_of_a_cluster_lead_back_to_it_and_to_their_place_on_it() {
+        let (_, mesh) = mesh();
+        for e in mesh.elements() {
+            for s in squares(7) {
+                let within = square_to_triangle(s);
+                let (triangle, uv) = mesh.on_element(e, within);
+                let (element, back) = mesh.locate(triangle, uv, mesh.place(e).back).unwrap();
+                assert!(element == e && back.distance(within) < 1e-4, "{e} {within}: {element} {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_triangle_of_a_cluster_gets_its_share_of_points_evenly() {
+        const N: u32 = 200;
+        let (scene, mesh) = mesh();
+        for e in mesh.elements().step_by(41) {
+            let pieces: Vec<Place> = mesh.pieces(e).collect();
+            let area = |t: u32| triangle::surface_area(&scene, t);
+            let total: f64 = pieces.iter().map(|piece| area(piece.triangle)).sum();
+            assert!((total / f64::from(mesh.area(e)) - 1.0).abs() < 1e-5);
+            let points: Vec<(u32, Vec2)> = squares(N).map(|s| mesh.point(e, s)).collect();
+            for Place { triangle, .. } in pieces {
+                let here = points.iter().filter(|(t, _)| *t == triangle);
+                let (count, sum) = here.fold((0.0, Vec2::ZERO), |(count, sum), (_, uv)| (count + 1.0, sum + *uv));
+                let share = count / f64::from(N * N);
+                // A strip has whole columns of points.
+                assert!(
+                    (share - area(triangle) / total).abs() < 1.01 / f64::from(N),
+                    "{share} {}",
+                    area(triangle) / total
+                );
+                let off = (sum / count as f32 - 1.0 / 3.0).abs().max_element();
+                assert!(count == 0.0 || off < 4.0 / (share as f32 * N as f32), "{off} of {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn areas_and_colours_are_those_of_the_triangles() {
+        let (scene, mesh) = mesh();
+        let whole = ElementMesh::new(&scene, Resolution::Elements(1)).unwrap();
+        assert!((mesh.total_area() / whole.total_area() - 1.0).abs() < 1e-6);
+        let counted: u32 = mesh.areas().map(|(_, count)| count).sum();
+        assert_eq!(counted as usize, mesh.len());
+        let close = |a: Rgb, b: Rgb| a.to_array().iter().zip(b.to_array()).all(|(a, b)| (a - b).abs() < 1e-6);
+        assert!(mesh.elements().all(|e| close(mesh.reflectivity(e), Rgb::new(0.2, 0.5, 0.8))));
+        assert_eq!(ElementMesh::with_cut(&scene, &mesh.cut()).unwrap().cut(), mesh.cut());
+    }
+
+    #[test]
+    fn cuts_with_impossible_clusters_are_refused() {
+        let (scene, mesh) = mesh();
+        let cut = mesh.cut();
+        let last = scene.triangles.len() - 1;
+        let refused = |t: usize, leader: u32| {
+            let mut cut = cut.clone();
+            cut.leaders[t] = leader;
+            ElementMesh::with_cut(&scene, &cut).is_err()
+        };
+        let follower = (0..last).find(|&t| cut.leaders[t] != t as u32).unwrap();
+        // Of another object, beyond itself, of one that follows itself, of nothing.
+        assert!(refused(last, 0) && refused(0, 1) && refused(follower + 1, follower as u32) && refused(last, u32::MAX));
+        assert!(!refused(follower, follower as u32));
+        let mut short = cut.clone();
+        short.leaders.pop();
+        assert!(ElementMesh::with_cut(&scene, &short).is_err());
+        let mut cut_finer = cut.clone();
+        cut_finer.divisions[follower] = 2;
+        assert!(ElementMesh::with_cut(&scene, &cut_finer).is_err());
+    }
+}

@@ -157,7 +157,8 @@ impl Neighbourhood {
             };
             let around = rest.triangles.iter().flat_map(|&t| self.of(t)).map(|&n| region_of[n as usize]);
             let others = around.filter(|&r| r != FREE && r as usize != number && bears(&regions[r as usize]));
-            let smaller = |a: &u32, b: &u32| regions[*a as usize].area.total_cmp(&regions[*b as usize].area).then(a.cmp(b));
+            let smaller =
+                |a: &u32, b: &u32| regions[*a as usize].area.total_cmp(&regions[*b as usize].area).then(a.cmp(b));
             match others.min_by(smaller) {
                 None => regions[number] = rest,
                 Some(other) => {
@@ -199,4 +200,55 @@ fn neighbours(scene: &Scene) -> Vec<(u32, u32)> {
         (a.0, a.1, a.2) == (b.0, b.1, b.2) && a.3 != b.3
     });
     pairs.map(|pair| (pair[0].3, pair[1].3)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{ElementMesh, Resolution};
+    use crate::scene::builtin::builtin;
+
+    #[test]
+    fn clusters_stay_on_one_object_and_off_edges_and_lamps() {
+        let scene = builtin("office").unwrap();
+        let whole = ElementMesh::new(&scene, Resolution::Elements(1)).unwrap().len();
+        for target in [whole as u64 / 2, whole as u64 * 2] {
+            let mesh = ElementMesh::new(&scene, Resolution::Clustered(target)).unwrap();
+            assert!(mesh.len() as u64 <= target && mesh.len() as u64 * 100 > target * 97, "{} of {target}", mesh.len());
+            let mut clusters = 0;
+            for cluster in mesh.elements().filter_map(|e| mesh.cluster(e)) {
+                clusters += 1;
+                let first = cluster.largest();
+                for t in cluster.triangles() {
+                    assert_eq!(scene.triangles[t as usize].object, scene.triangles[first as usize].object);
+                    assert!(!scene.material_of(t).is_emitter());
+                    let [a, b] = [first, t].map(|t| triangle::normal(scene.corners(t)));
+                    assert!(a.dot(b) > 45f32.to_radians().cos(), "{a} {b}");
+                }
+            }
+            assert!(clusters > 1000, "{clusters}");
+        }
+    }
+
+    #[test]
+    fn elements_are_as_many_as_were_asked_for_however_fine_a_flat_surface_is_modelled() {
+        use crate::math::Rgb;
+        use crate::scene::Material;
+        use crate::scene::builtin::shapes::Builder;
+        let plate = |cuts: u32| {
+            let mut builder = Builder::new("plate");
+            let material = builder.material(Material::diffuse("", Rgb::grey(0.5)));
+            builder.object("plate", material);
+            let steps: Vec<f32> = (0..=cuts).map(|k| k as f32 / cuts as f32).collect();
+            builder.grid(&steps, &steps, |u, v| Vec3::new(u, v, 0.0), |_, _| true);
+            builder.finish()
+        };
+        for cuts in [1, 30, 100] {
+            let mesh = ElementMesh::new(&plate(cuts), Resolution::Clustered(300)).unwrap();
+            assert!((260..=300).contains(&mesh.len()), "{} elements of {cuts} cuts", mesh.len());
+            let sizes = mesh.elements().map(|e| mesh.area(e));
+            let (least, most) = sizes.fold((f32::INFINITY, 0f32), |(a, b), size| (a.min(size), b.max(size)));
+            assert!(most * mesh.len() as f32 <= 3.0, "{cuts} cuts: {least} to {most}");
+        }
+    }
 }

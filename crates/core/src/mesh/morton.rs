@@ -13,8 +13,7 @@ pub fn order(scene: &Scene) -> Vec<u32> {
 /// Puts `triangles` into the Morton order of their centroids in the box around them; ties by number.
 pub fn sort(scene: &Scene, triangles: &mut [u32]) {
     let corners = triangles.iter().flat_map(|&t| scene.corners(t));
-    let (low, high) =
-        corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let (low, high) = corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let scale = Vec3::splat(1023.0) / (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
     let code = |t: u32| {
         let [a, b, c] = scene.corners(t);

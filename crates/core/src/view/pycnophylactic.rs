@@ -73,3 +73,72 @@ fn sums<T: Copy + Default + std::ops::AddAssign>(count: usize, values: impl Iter
 fn positive(color: Rgb) -> Rgb {
     Rgb::from(color.to_array().map(|v| v.max(0.0)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::VertexField;
+    use super::super::tests::solution;
+    use super::*;
+    use crate::mesh::Cut;
+    use crate::scene::Material;
+    use crate::scene::builtin::shapes::Builder;
+    use glam::{Vec2, Vec3};
+
+    /// Squares along an edge of a plate, and along an edge of a cluster.
+    const PLATE: usize = 32;
+    const CLUSTER: usize = 8;
+
+    /// A plate 1 m wide in sixteen clusters.
+    fn plate() -> Problem {
+        let mut builder = Builder::new("plate");
+        let material = builder.material(Material::diffuse("", Rgb::grey(0.5)));
+        builder.object("plate", material);
+        let steps: Vec<f32> = (0..=PLATE).map(|k| k as f32 / PLATE as f32).collect();
+        builder.grid(&steps, &steps, |u, v| Vec3::new(u, v, 0.0), |_, _| true);
+        let leader = |t: usize| {
+            let first = |k: usize| k / CLUSTER * CLUSTER;
+            2 * (first(t / 2 / PLATE) * PLATE + first(t / 2 % PLATE)) as u32
+        };
+        let triangles = 2 * PLATE * PLATE;
+        let cut = Cut { leaders: (0..triangles).map(leader).collect(), ..Cut::regular(&vec![1; triangles]) };
+        Problem::with_cut(builder.finish(), &cut).unwrap()
+    }
+
+    /// Means over the clusters of `light` [lux] at each place, and what becomes of them.
+    fn field(problem: &Problem, light: impl Fn(Vec3) -> f32) -> (Vec<Rgb>, VertexField) {
+        let mean = |e| {
+            let points = problem.mesh.pieces(e).map(|p| problem.geometry.surface(p.triangle, Vec2::splat(1.0 / 3.0)).0);
+            Rgb::grey(points.map(&light).sum::<f32>() / problem.mesh.pieces(e).count() as f32)
+        };
+        let means: Vec<Rgb> = problem.mesh.elements().map(mean).collect();
+        let field = VertexField::as_computed(problem, &solution(means.clone()));
+        (means, field)
+    }
+
+    #[test]
+    fn a_gradient_runs_straight_through_clusters_and_their_means_are_kept() {
+        let problem = plate();
+        assert_eq!(problem.mesh.len(), 16);
+        let light = |p: Vec3| 10.0 + 8.0 * p.x + 4.0 * p.y;
+        let (means, field) = field(&problem, light);
+        for v in 0..field.len() as u32 {
+            let p = field.position(v);
+            // Away from the border, beyond which nothing is known. Flat clusters with ramps would be wrong by 1.5.
+            if p.min(Vec3::ONE - p).truncate().min_element() > 0.2 {
+                assert!((field.irradiance(v).g - light(p)).abs() < 0.25, "{p}: {} {}", field.irradiance(v).g, light(p));
+            }
+        }
+        for e in problem.mesh.elements() {
+            let at = |place: crate::mesh::Place| field.vertices_at(&problem, place).map(|v| field.irradiance(v).g);
+            let mean = problem.mesh.pieces(e).flat_map(at).sum::<f32>() / (6 * CLUSTER * CLUSTER) as f32;
+            assert!((mean / means[e as usize].g - 1.0).abs() < 0.01, "{mean} {}", means[e as usize].g);
+        }
+    }
+
+    #[test]
+    fn even_light_stays_even() {
+        let problem = plate();
+        let (_, field) = field(&problem, |_| 7.0);
+        assert!((0..field.len() as u32).all(|v| (field.irradiance(v).g - 7.0).abs() < 1e-4));
+    }
+}

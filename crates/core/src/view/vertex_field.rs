@@ -239,7 +239,9 @@ mod tests {
         assert_eq!(field.len(), 24);
         for e in problem.mesh.elements() {
             let expected = Rgb::grey((problem.mesh.triangle(e) / 2 + 1) as f32);
-            assert!(field.vertices_at(&problem, problem.mesh.place(e)).iter().all(|&v| field.irradiance(v) == expected));
+            assert!(
+                field.vertices_at(&problem, problem.mesh.place(e)).iter().all(|&v| field.irradiance(v) == expected)
+            );
         }
     }
 

@@ -72,10 +72,14 @@ pub fn centre(problem: &Problem, e: u32) -> (Vec3, Vec3) {
     let first = middle(problem.mesh.place(e));
     let Some(cluster) = problem.mesh.cluster(e) else { return first };
     let shares = cluster.pieces().iter().map(|piece| piece.share());
-    let (position, normal) = problem.mesh.pieces(e).map(middle).zip(shares).fold(
-        (Vec3::ZERO, Vec3::ZERO),
-        |(position, normal), ((p, n), share)| (position + share * p, normal + share * n),
-    );
+    let (position, normal) = problem
+        .mesh
+        .pieces(e)
+        .map(middle)
+        .zip(shares)
+        .fold((Vec3::ZERO, Vec3::ZERO), |(position, normal), ((p, n), share)| {
+            (position + share * p, normal + share * n)
+        });
     (position, normal.normalize_or(first.1))
 }
 
@@ -111,6 +115,7 @@ pub fn display_colors(problem: &Problem, solution: &Solution) -> Vec<[u8; 3]> {
 mod tests {
     use super::*;
     use crate::fixture;
+    use glam::Vec2;
 
     #[test]
     fn corners_run_counter_clockwise_round_the_normal_of_each_side() {
@@ -122,6 +127,20 @@ mod tests {
             assert!(cross.normalize().distance(normal) < 1e-5, "element {e}");
             assert!((0.5 * cross.length() - problem.mesh.area(e)).abs() < 1e-5, "element {e}");
             assert!(((a + b + c) / 3.0).distance(position) < 1e-5, "element {e}");
+        }
+    }
+
+    #[test]
+    fn the_middle_of_a_cluster_is_that_of_its_points() {
+        let (problem, _) = fixture::lit_ball();
+        for e in problem.mesh.elements() {
+            let square = |k: u32| Vec2::new((k % 50) as f32 + 0.5, (k / 50) as f32 + 0.5) / 50.0;
+            let points = (0..2500).map(|k| problem.mesh.point(e, square(k)));
+            let mean = points.map(|(t, uv)| problem.geometry.surface(t, uv).0).sum::<Vec3>() / 2500.0;
+            let (position, normal) = centre(&problem, e);
+            let side = if problem.mesh.place(e).back { -1.0 } else { 1.0 };
+            assert!(mean.distance(position) < 0.01, "{mean} {position}");
+            assert!(normal.distance(side * (position - Vec3::ONE).normalize()) < 0.05, "{normal}");
         }
     }
 

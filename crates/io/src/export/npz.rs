@@ -101,12 +101,19 @@ impl Archive {
 mod tests {
     use super::*;
     use crate::fixture;
+    use isolux_core::{Problem, Solution};
     use std::io::Read;
 
     #[test]
     fn arrays_read_back_with_shape_and_values() {
-        let (problem, solution) = fixture::lit_box();
-        let bytes = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
+        let names =
+            [fixture::lit_box(), fixture::lit_ball()].map(|(problem, solution)| reads_back(&problem, &solution));
+        assert_eq!(names, ["größe", "ball"]);
+    }
+
+    /// The name of the last object.
+    fn reads_back(problem: &Problem, solution: &Solution) -> String {
+        let bytes = write(&LitScene::new(problem, solution), &ExportOptions::default()).unwrap();
         let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
         let mut array = |name: &str| {
             let mut npy = Vec::new();
@@ -120,9 +127,12 @@ mod tests {
         let expected: Vec<f32> = solution.irradiance.iter().flat_map(|c| c.to_array()).collect();
         assert_eq!(irradiance.into_vec::<f32>().unwrap(), expected);
         let npy = array("vertices");
-        assert_eq!(npyz::NpyFile::new(&npy[..]).unwrap().shape(), [n, 3, 3]);
+        let pieces: Vec<u32> = elements::pieces(problem).map(|(e, _)| e).collect();
+        assert_eq!(npyz::NpyFile::new(&npy[..]).unwrap().shape(), [pieces.len() as u64, 3, 3]);
+        let npy = array("element");
+        assert_eq!(npyz::NpyFile::new(&npy[..]).unwrap().into_vec::<u32>().unwrap(), pieces);
         let npy = array("names");
         let names: Vec<String> = npyz::NpyFile::new(&npy[..]).unwrap().into_vec().unwrap();
-        assert_eq!(names.iter().map(|n| n.trim_end_matches('\0')).next_back(), Some("größe"));
+        names.last().unwrap().trim_end_matches('\0').to_owned()
     }
 }

@@ -84,18 +84,22 @@ mod tests {
 
     #[test]
     fn another_reader_finds_the_same_numbers() {
-        let (problem, solution) = fixture::lit_box();
-        let file = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
+        [fixture::lit_box(), fixture::lit_ball()].iter().for_each(|(problem, solution)| finds(problem, solution));
+    }
+
+    fn finds(problem: &Problem, solution: &Solution) {
+        let file = write(&LitScene::new(problem, solution), &ExportOptions::default()).unwrap();
         let ply = Parser::<DefaultElement>::new().read_ply(&mut &file[..]).unwrap();
         let (vertices, faces) = (&ply.payload["vertex"], &ply.payload["face"]);
-        assert_eq!((vertices.len(), faces.len()), (3 * problem.mesh.len(), problem.mesh.len()));
-        for e in problem.mesh.elements() {
-            let face = &faces[e as usize];
+        let pieces: Vec<_> = elements::pieces(problem).collect();
+        assert_eq!((vertices.len(), faces.len()), (3 * pieces.len(), pieces.len()));
+        for (&(e, place), face) in pieces.iter().zip(faces) {
+            assert_eq!(face["element"], Property::UInt(e));
             assert_eq!(face["irradiance_g"], Property::Float(solution.irradiance[e as usize].g));
-            assert_eq!(face["radiosity_b"], Property::Float(solution.radiosity(&problem, e).b));
-            assert_eq!(face["object"], Property::UInt(elements::object(&problem, e)));
+            assert_eq!(face["radiosity_b"], Property::Float(solution.radiosity(problem, e).b));
+            assert_eq!(face["object"], Property::UInt(elements::object(problem, e)));
             let Property::ListInt(corners) = &face["vertex_indices"] else { panic!("{face:?}") };
-            let y = elements::corners(&problem, problem.mesh.place(e)).map(|p| Property::Float(p.y));
+            let y = elements::corners(problem, place).map(|p| Property::Float(p.y));
             assert!(corners.iter().zip(y).all(|(&k, y)| vertices[k as usize]["y"] == y));
         }
     }

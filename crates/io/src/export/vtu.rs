@@ -104,8 +104,11 @@ mod tests {
 
     #[test]
     fn offsets_in_the_xml_lead_to_the_numbers() {
-        let (problem, solution) = fixture::lit_box();
-        let file = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
+        [fixture::lit_box(), fixture::lit_ball()].iter().for_each(|(problem, solution)| leads(problem, solution));
+    }
+
+    fn leads(problem: &Problem, solution: &Solution) {
+        let file = write(&LitScene::new(problem, solution), &ExportOptions::default()).unwrap();
         let marker = "encoding=\"raw\">\n_";
         let appended = find(&file, marker) + marker.len();
         let xml = std::str::from_utf8(&file[..appended]).unwrap();
@@ -115,11 +118,12 @@ mod tests {
             let length = u64::from_le_bytes(file[start..start + 8].try_into().unwrap()) as usize;
             file[start + 8..start + 8 + length].to_vec()
         };
-        let irradiance: Vec<u8> =
-            solution.irradiance.iter().flat_map(|c| c.to_array()).flat_map(f32::to_le_bytes).collect();
-        assert_eq!(block("Irradiance"), irradiance);
-        assert_eq!(block("types"), vec![VTK_TRIANGLE; problem.mesh.len()]);
-        assert_eq!(block("Points").len(), problem.mesh.len() * 36);
+        let pieces: Vec<u32> = elements::pieces(problem).map(|(e, _)| e).collect();
+        let of_pieces = pieces.iter().flat_map(|&e| solution.irradiance[e as usize].to_array());
+        assert_eq!(block("Irradiance"), of_pieces.flat_map(f32::to_le_bytes).collect::<Vec<u8>>());
+        assert_eq!(block("Element"), pieces.iter().flat_map(|e| e.to_le_bytes()).collect::<Vec<u8>>());
+        assert_eq!(block("types"), vec![VTK_TRIANGLE; pieces.len()]);
+        assert_eq!(block("Points").len(), pieces.len() * 36);
     }
 
     #[test]
