@@ -76,8 +76,8 @@ pub struct Solve {
     #[arg(short, long = "output", value_name = "OUT")]
     outputs: Vec<PathBuf>,
 
-    /// Number of elements to aim at, like 50000 or 1e6 [default: one for each side of a triangle, and 400k
-    /// more; 2000 for deterministic methods]
+    /// Number of elements to aim at, like 50000 or 1e6: large triangles are cut, and small ones of a smooth surface put
+    /// together, but for deterministic methods [default: 400k; 2000 for deterministic methods]
     #[arg(long, value_name = "N", value_parser = parse_count, conflicts_with = "max_edge")]
     elements: Option<u64>,
 

@@ -20,14 +20,14 @@ pub enum Resolution {
     /// One element for each side of every triangle, and this many more.
     Extra(u64),
     /// As close to this number of elements as it comes from below, whatever the number of triangles: those much smaller than
-    /// elements are put together, as far as surfaces are smooth and connected.
+    /// elements are put together ([`super::grow`]), as far as surfaces are smooth and connected.
     Clustered(u64),
 }
 
 impl Default for Resolution {
-    /// Room for shadows on large walls without drowning in elements.
+    /// Room for shadows on large walls without drowning in elements, however finely things are modelled.
     fn default() -> Resolution {
-        Resolution::Extra(400_000)
+        Resolution::Clustered(400_000)
     }
 }
 
@@ -75,13 +75,14 @@ fn cut_for_target(scene: &Scene, target: u64) -> Result<Cut, Error> {
         return Err(Error::TooManyElements { asked: target, limit: MOST_ELEMENTS });
     }
     let few = |edge: f64| elements(scene, edge, |corners| economical(corners, edge)) <= target;
-    let edge = least_edge(scene, 40, few);
+    let longest = (0..scene.triangles.len() as u32).map(|t| longest_edge(scene.corners(t))).fold(0.0, f64::max);
+    let edge = least_edge([longest / MOST_DIVISIONS, longest], 40, few);
     let cut = cut(scene, edge, |corners| economical(corners, edge));
     cut.element_count(scene)?;
     Ok(cut)
 }
 
-/// The same with clusters. Their number falls with the edge as good as always: at worst there are a few elements fewer.
+/// The same with clusters. Their number falls as edges grow, as good as always: at worst there are a few elements fewer.
 fn cut_with_clusters(scene: &Scene, target: u64) -> Result<Cut, Error> {
     let whole = cut_for_target(scene, target)?;
     let neighbourhood = Neighbourhood::new(scene);
@@ -90,14 +91,16 @@ fn cut_with_clusters(scene: &Scene, target: u64) -> Result<Cut, Error> {
         Cut { leaders: neighbourhood.leaders(&cut, edge), ..cut }
     };
     let few = |edge: f64| clustered(edge).element_count(scene).is_ok_and(|count| count as u64 <= target);
-    let cut = clustered(least_edge(scene, 14, few));
+    // Clusters may be as large as the scene.
+    let (low, high) = scene.bounds();
+    let size = 2.0 * f64::from(low.distance(high));
+    let cut = clustered(least_edge([size / MOST_DIVISIONS, size], 14, few));
     Ok(if cut.leaders.is_empty() { whole } else { cut })
 }
 
-/// Bisects the edge length for the least that is long enough for `few` elements.
-fn least_edge(scene: &Scene, steps: u32, few: impl Fn(f64) -> bool) -> f64 {
-    let longest = (0..scene.triangles.len() as u32).map(|t| longest_edge(scene.corners(t))).fold(0.0, f64::max);
-    let (mut fine, mut coarse) = (longest / MOST_DIVISIONS, longest.max(f64::MIN_POSITIVE));
+/// Bisects the edge length [m] for the least that is long enough for `few` elements, the longest if none is.
+fn least_edge([shortest, longest]: [f64; 2], steps: u32, few: impl Fn(f64) -> bool) -> f64 {
+    let (mut fine, mut coarse) = (shortest, longest.max(f64::MIN_POSITIVE));
     for _ in 0..steps {
         let middle = (fine * coarse).sqrt();
         if few(middle) {
