@@ -93,7 +93,7 @@ fn cut_with_clusters(scene: &Scene, target: u64) -> Result<Cut, Error> {
     let few = |edge: f64| clustered(edge).element_count(scene).is_ok_and(|count| count as u64 <= target);
     // Clusters may be as large as the scene.
     let (low, high) = scene.bounds();
-    let size = 2.0 * f64::from(low.distance(high));
+    let size = 2.0 * f64::from(low.distance(high)).min(f64::from(f32::MAX));
     let cut = clustered(least_edge([size / MOST_DIVISIONS, size], 14, few));
     Ok(if cut.leaders.is_empty() { whole } else { cut })
 }
