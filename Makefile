@@ -7,6 +7,7 @@
 #   make study-reference-rooms    real rooms against an independent renderer
 #   make growth                   time to a fixed accuracy from 10^4 to 10^6 elements, in two rooms
 #   make study-methods            all methods on one scene, error and time
+#   make study-clusters           what elements of many triangles are worth, in two rooms
 #   make study-smoothing          what taking noise out gains, and its bias, in three rooms
 #   make study-mesh               what a mesh that follows the light gains, in three rooms
 
@@ -14,7 +15,7 @@ ISOLUX = target/release/isolux
 
 STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count speed
 
-.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods study-smoothing study-mesh
+.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods study-smoothing study-mesh study-clusters
 
 build:
 	cargo build --release --locked
@@ -56,3 +57,6 @@ study-smoothing:
 
 study-mesh:
 	cargo run --release --locked -p isolux-testing --bin mesh
+
+study-clusters:
+	cargo run --release --locked -p isolux-testing --bin clusters

@@ -80,8 +80,8 @@ pub struct Solve {
     #[arg(short, long = "output", value_name = "OUT")]
     outputs: Vec<PathBuf>,
 
-    /// Number of elements to aim at, like 50000 or 1e6 [default: one for each side of a triangle, and 400k
-    /// more; 2000 for deterministic methods]
+    /// Number of elements to aim at, like 50000 or 1e6: large triangles are cut, and small ones of a smooth surface put
+    /// together, but for deterministic methods [default: 400k; 2000 for deterministic methods]
     #[arg(long, value_name = "N", value_parser = parse_count, conflicts_with = "max_edge")]
     elements: Option<u64>,
 
@@ -218,7 +218,8 @@ impl Solve {
 
     fn resolution(&self, chosen: &Chosen) -> Resolution {
         match (self.elements, self.max_edge) {
-            (Some(elements), _) => Resolution::Elements(elements),
+            (Some(elements), _) if self.method.deterministic().is_some() => Resolution::Elements(elements),
+            (Some(elements), _) => Resolution::Clustered(elements),
             (None, Some(edge)) => Resolution::MaxEdge(edge),
             (None, None) if chosen.is_deterministic() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
             (None, None) => Resolution::default(),

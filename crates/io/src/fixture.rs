@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 use isolux_core::math::Rgb;
 use isolux_core::mesh::Resolution;
+use isolux_core::scene::builtin::shapes::Builder;
 use isolux_core::scene::*;
 use isolux_core::solution::{Balance, Provenance, Work};
 use isolux_core::{Problem, Solution};
@@ -78,6 +79,18 @@ fn cameras() -> Vec<Camera> {
 /// [`scene`] in some hundred elements, every number different.
 pub fn lit_box() -> (Problem, Solution) {
     let problem = Problem::new(scene(), Resolution::MaxEdge(0.75)).unwrap();
+    let solution = made_up(&problem);
+    (problem, solution)
+}
+
+/// A ball with two sides whose elements are made of many triangles each.
+pub fn lit_ball() -> (Problem, Solution) {
+    let mut builder = Builder::new("ball");
+    let material = builder.material(Material { two_sided: true, ..Material::diffuse("grey", Rgb::grey(0.5)) });
+    builder.object("ball", material);
+    builder.ball(Vec3::ONE, 1.0, 32);
+    let problem = Problem::new(builder.finish(), Resolution::Clustered(200)).unwrap();
+    assert!(problem.mesh.has_clusters());
     let solution = made_up(&problem);
     (problem, solution)
 }

@@ -66,6 +66,8 @@ pub const REGISTER: &[(&str, u32)] = &[
     ("light groups: error bars", 2),
     ("black room", comparisons(6)),
     ("bright sphere", comparisons(8)),
+    ("clusters: box", 12 * comparisons(6)),
+    ("clusters: furnace", 4 * comparisons(3)),
     ("box: 12 elements", comparisons(6)),
     ("box: 48 elements", comparisons(6)),
     ("integrals by sequences", 4 * SEQUENCES.len() as u32),

@@ -192,6 +192,15 @@ impl Comparison {
         self.shown.push(shown.map(with_luminance).collect());
     }
 
+    /// Luminance irradiance [lux] at all points in solution `run`: of the element, or as it is shown.
+    pub fn luminances(&self, run: usize, of: Value) -> impl Iterator<Item = f64> + '_ {
+        let value = move |i: usize| match of {
+            Value::OfElement => self.runs[run][i].value[LUMINANCE],
+            Value::AtPoint => self.shown[run][i][LUMINANCE],
+        };
+        (0..self.points.len()).map(value)
+    }
+
     /// Ratio of the means over the points to which `belongs` says yes.
     pub fn ratio(&self, of: Value, channel: usize, belongs: impl Fn(&Point) -> bool) -> Ratio {
         let chosen: Vec<usize> = (0..self.points.len()).filter(|&i| belongs(&self.points[i])).collect();

@@ -106,7 +106,7 @@ fn fringe(scene: Scene) -> (usize, usize) {
     let field = VertexField::as_computed(&problem, &solution);
     let lit = problem.mesh.elements().filter(is_floor).filter(|&e| solution.irradiance[e as usize].luminance() > 0.5);
     let is_off = |v: &u32| (field.irradiance(*v).luminance() - 1.0).abs() > 0.15;
-    (between, lit.flat_map(|e| field.vertices_of(&problem, e)).filter(is_off).count())
+    (between, lit.flat_map(|e| field.vertices_at(&problem, problem.mesh.place(e))).filter(is_off).count())
 }
 
 #[test]

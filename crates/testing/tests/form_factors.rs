@@ -29,8 +29,8 @@ fn landing(problem: &Problem, e: u32, direction: impl Fn(Vec2) -> Vec3) -> (f64,
     let mut random = Random::new(u64::from(e));
     let mut landed = vec![0; problem.mesh.len()];
     for _ in 0..LINES {
-        let uv = problem.mesh.point(e, random.square());
-        let hit = line(&*problem.geometry, problem.mesh.triangle(e), uv, direction(random.square()));
+        let (triangle, uv) = problem.mesh.point(e, random.square());
+        let hit = line(&*problem.geometry, triangle, uv, direction(random.square()));
         let on = problem.mesh.at(hit.triangle, hit.uv, hit.back).expect("a line inside a sphere ends on its front");
         landed[on as usize] += 1;
     }

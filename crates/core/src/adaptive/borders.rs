@@ -1,10 +1,9 @@
 //! Which triangles go on smoothly beyond an edge of a triangle.
 
 use crate::geometry::Geometry;
+use crate::math::weld::{self, Weld};
 use crate::scene::Scene;
 use crate::view::crease::CREASE_ANGLE;
-use crate::view::vertices::WELD_TOLERANCE;
-use crate::view::weld::Weld;
 use glam::Vec2;
 
 /// All edges that triangles share from corner to corner.
@@ -18,7 +17,7 @@ pub struct Borders {
 
 impl Borders {
     pub fn of(scene: &Scene, geometry: &dyn Geometry) -> Borders {
-        let mut weld = Weld::new((WELD_TOLERANCE * geometry.bounding_sphere().1).max(f32::MIN_POSITIVE));
+        let mut weld = Weld::new((weld::TOLERANCE * geometry.bounding_sphere().1).max(f32::MIN_POSITIVE));
         let triangles = 0..scene.triangles.len() as u32;
         let corners: Vec<[u32; 3]> = triangles.map(|t| scene.corners(t).map(|p| weld.number(p))).collect();
         let edge = |(t, corners): (u32, &[u32; 3])| [0, 1, 2].map(|k| (ends(corners, k), t, k));

@@ -138,7 +138,7 @@ impl Forest {
         for tree in &self.trees {
             (0..tree.slices.patch_count()).for_each(|patch| tree.push_divisions(patch, &mut divisions));
         }
-        Cut { slices: self.trees.iter().map(|tree| tree.slices).collect(), divisions }
+        Cut { slices: self.trees.iter().map(|tree| tree.slices).collect(), divisions, leaders: Vec::new() }
     }
 }
 

@@ -122,11 +122,16 @@ pub const WAYS: &[WayEntry] = &[
 /// The way called `name`.
 ///
 /// # Errors
-/// [`Error::UnknownName`]; those of the way; [`Error::Parameter`] if the matrix could have more than [`MOST_ENTRIES`].
+/// [`Error::UnknownName`]; those of the way; [`Error::Parameter`] for clusters of triangles, or if the matrix could have more than
+/// [`MOST_ENTRIES`].
 pub fn way(name: &str, problem: &Problem, settings: &Settings) -> Result<Box<dyn Way>, Error> {
     let found = WAYS.iter().find(|way| way.name == name);
     let entry =
         found.ok_or_else(|| Error::unknown_name("way to form factors", name, WAYS.iter().map(|way| way.name)))?;
+    if problem.mesh.has_clusters() {
+        let allowed = "form factors are computed between flat elements; cut the scene without clusters";
+        return Err(Error::Parameter { name: "elements", value: "clusters of triangles".to_owned(), allowed });
+    }
     let way = (entry.make)(problem, settings)?;
     let elements = problem.mesh.len() as u64;
     if elements.saturating_mul(way.most_entries(elements)) > MOST_ENTRIES {

@@ -1,4 +1,4 @@
-//! Small mathematics that everything else stands on: colour, error bars, frames, warps, moments, spherical triangles, whole parts.
+//! Small mathematics that everything else stands on: colour, error bars, frames, warps, moments, spherical triangles, which points are one, whole parts.
 
 pub mod color;
 pub mod estimate;
@@ -7,6 +7,7 @@ pub mod hash;
 pub mod moments;
 pub mod spherical_triangle;
 pub mod warp;
+pub mod weld;
 pub mod whole;
 
 pub use color::Rgb;

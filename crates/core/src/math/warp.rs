@@ -37,6 +37,12 @@ pub fn square_to_triangle(s: Vec2) -> Vec2 {
     }
 }
 
+/// The inverse of [`square_to_triangle`].
+pub fn triangle_to_square(uv: Vec2) -> Vec2 {
+    let sum = uv.x + uv.y;
+    if uv.y > uv.x { Vec2::new(2.0 * uv.x, sum) } else { Vec2::new(sum, 2.0 * uv.y) }
+}
+
 /// Unit square to the unit sphere, uniform (Archimedes' hat-box map).
 pub fn square_to_sphere(u: Vec2) -> Vec3 {
     let z = 1.0 - 2.0 * u.x;
@@ -77,6 +83,11 @@ mod tests {
         assert!((mean(400, |u| f64::from(b(u).x)) - 1.0 / 3.0).abs() < 1e-4);
         assert!((mean(400, |u| f64::from(b(u).x * b(u).y)) - 1.0 / 12.0).abs() < 1e-4);
         assert!(grid(100).all(|u| b(u).x >= 0.0 && b(u).y >= 0.0 && b(u).x + b(u).y <= 1.0));
+    }
+
+    #[test]
+    fn triangle_maps_are_inverse_to_each_other() {
+        assert!(grid(100).all(|s| triangle_to_square(square_to_triangle(s)).distance(s) < 1e-6));
     }
 
     #[test]

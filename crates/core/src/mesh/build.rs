@@ -1,13 +1,16 @@
 //! Cutting a scene into elements.
 
 use super::average::Averages;
+use super::clusters::{Cluster, Clusters};
 use super::cut::Cut;
 use super::parts::PARTS;
 use super::slices::Slices;
 use super::sparse::SparseColors;
 use super::{ElementMesh, Patch, Resolution, Surface, cells, morton, triangle};
 use crate::Error;
+use crate::math::Rgb;
 use crate::scene::Scene;
+use glam::Vec2;
 
 impl ElementMesh {
     /// Cuts `scene` into elements as `resolution` asks.
@@ -34,6 +37,7 @@ impl ElementMesh {
             surfaces: Vec::with_capacity(cut.slices.len()),
             patches: Vec::with_capacity(cut.divisions.len()),
             parts: Vec::new(),
+            clusters: Clusters::default(),
             patch: Vec::with_capacity(total),
             reflectivity: Vec::with_capacity(total),
             emission: SparseColors::default(),
@@ -43,10 +47,15 @@ impl ElementMesh {
         for t in 0..mesh.surfaces.len() {
             mesh.divide_triangle(triangle::surface_area(scene, t as u32), t, &mut divisions);
         }
-        let averages = Averages::new(scene);
+        let (averages, clusters) = (Averages::new(scene), Clusters::new(scene, &cut.leaders));
         for t in morton::order(scene) {
-            mesh.surfaces[t as usize].patches().for_each(|patch| mesh.push_elements(&averages, patch));
+            match clusters.with(t) {
+                None => mesh.push_triangle_elements(&averages, t),
+                Some(cluster) if cluster.largest() == t => mesh.push_cluster(&averages, cluster),
+                Some(_) => {}
+            }
         }
+        mesh.clusters = clusters;
         mesh.check_finite()?;
         Ok(mesh)
     }
@@ -65,6 +74,33 @@ impl ElementMesh {
         for k in 0..slices.patch_count() {
             self.divide(first_patch + k, area * slices.area_share(k), divisions);
         }
+    }
+
+    /// The element that a cluster is on its front, and the one on its back if it has two sides.
+    fn push_cluster(&mut self, averages: &Averages, cluster: Cluster) {
+        const WHOLE: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::Y];
+        let first_element = self.patch.len() as u32;
+        let patches: Vec<u32> = cluster.triangles().map(|t| self.surfaces[t as usize].first_patch).collect();
+        let area: f64 = patches.iter().map(|&patch| f64::from(self.patches[patch as usize].element_area)).sum();
+        let (mut reflectivity, mut emission) = (Rgb::BLACK, Rgb::BLACK);
+        for (piece, &patch) in cluster.pieces().iter().zip(&patches) {
+            let patch = &mut self.patches[patch as usize];
+            (patch.first, patch.element_area) = (first_element, area as f32);
+            let (reflects, emits) = averages.over_cell(piece.triangle, WHOLE);
+            reflectivity += reflects * piece.share();
+            emission += emits * piece.share();
+        }
+        let largest = cluster.largest();
+        for _ in 0..1 + u32::from(self.is_two_sided(largest)) {
+            self.patch.push(self.surfaces[largest as usize].first_patch);
+            self.reflectivity.push(reflectivity);
+            self.emission.push(emission);
+        }
+    }
+
+    /// The elements of all patches of a triangle.
+    fn push_triangle_elements(&mut self, averages: &Averages, t: u32) {
+        self.surfaces[t as usize].patches().for_each(|patch| self.push_elements(averages, patch));
     }
 
     /// The elements of a patch, in the order of their numbers.

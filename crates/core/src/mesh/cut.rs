@@ -1,10 +1,11 @@
-//! How the triangles of a scene are cut: across into slices, and each patch regularly, or into four and these again.
+//! How the triangles of a scene are cut: across into slices, and each patch regularly, or into four and these again; and which are put
+//! together.
 
 use super::cells;
 use super::parts::{MOST_SPLITS, PARTS};
 use super::slices::Slices;
 use crate::Error;
-use crate::scene::Scene;
+use crate::scene::{Scene, Shape};
 
 /// Element numbers are `u32`, one of which means "none".
 pub const MOST_ELEMENTS: u64 = u32::MAX as u64 - 1;
@@ -17,12 +18,14 @@ pub struct Cut {
     /// For every patch, triangle by triangle: the number m of divisions, which make m² elements a side; or 0, and then the same for
     /// the four parts into which it is split (see [`super::parts`]).
     pub divisions: Vec<u16>,
+    /// For every triangle the least one of its cluster, or its own number; nothing if no triangles are put together.
+    pub leaders: Vec<u32>,
 }
 
 impl Cut {
-    /// No needles: triangle `t` is cut into `divisions[t]²` elements a side.
+    /// No needles and no clusters: triangle `t` is cut into `divisions[t]²` elements a side.
     pub fn regular(divisions: &[u16]) -> Cut {
-        Cut { slices: vec![Slices::WHOLE; divisions.len()], divisions: divisions.to_vec() }
+        Cut { slices: vec![Slices::WHOLE; divisions.len()], divisions: divisions.to_vec(), leaders: Vec::new() }
     }
 
     /// Number of elements that `scene` is cut into.
@@ -35,24 +38,51 @@ impl Cut {
         if self.slices.len() != scene.triangles.len() || !self.slices.iter().all(|s| s.is_valid()) {
             return parameter(self.slices.len(), "slices are needed for each triangle");
         }
-        let mut divisions = self.divisions.iter().copied();
-        let mut asked = 0u64;
-        for (t, slices) in (0..).zip(&self.slices) {
-            for _ in 0..slices.patch_count() {
-                let Some(elements) = elements_of_patch(&mut divisions) else {
-                    return parameter(self.divisions.len(), "divisions are needed for each patch, or for its parts");
-                };
-                asked = asked.saturating_add(sides(scene, t).saturating_mul(elements));
-            }
+        let Some(of_side) = self.elements_of_sides() else {
+            return parameter(
+                self.divisions.len(),
+                "divisions are needed for each patch, or for its parts, and no more",
+            );
+        };
+        if !self.leaders.is_empty() && self.leaders.len() != scene.triangles.len() {
+            return parameter(self.leaders.len(), "a leader is needed for each triangle, or for none");
         }
-        if divisions.next().is_some() {
-            return parameter(self.divisions.len(), "there are divisions of more patches than there are");
+        let mut asked = 0u64;
+        for (t, &count) in of_side.iter().enumerate() {
+            match self.leaders.get(t).filter(|&&leader| leader as usize != t) {
+                None => asked = asked.saturating_add(sides(scene, t as u32).saturating_mul(count)),
+                Some(&leader) if self.can_follow(scene, &of_side, t, leader as usize) => {}
+                Some(_) => return parameter(t, "a cluster is of whole triangles of one object that do not emit"),
+            }
         }
         if asked > MOST_ELEMENTS {
             Err(Error::TooManyElements { asked, limit: MOST_ELEMENTS })
         } else {
             Ok(asked as usize)
         }
+    }
+
+    /// Number of elements into which a side of each triangle is cut, were there no clusters; `None` if the divisions are too few or too
+    /// many, or those of a patch that is split too often.
+    fn elements_of_sides(&self) -> Option<Vec<u64>> {
+        let mut divisions = self.divisions.iter().copied();
+        let mut of_side = |slices: &Slices| {
+            (0..slices.patch_count())
+                .try_fold(0u64, |sum, _| Some(sum.saturating_add(elements_of_patch(&mut divisions)?)))
+        };
+        let all = self.slices.iter().map(&mut of_side).collect();
+        if divisions.next().is_some() { None } else { all }
+    }
+
+    /// Whether triangle `t` may be in the cluster whose least triangle is `leader`.
+    fn can_follow(&self, scene: &Scene, of_side: &[u64], t: usize, leader: usize) -> bool {
+        let leads = leader < t && self.leaders[leader] as usize == leader;
+        leads
+            && of_side[t] == 1
+            && of_side[leader] == 1
+            && scene.triangles[t].object == scene.triangles[leader].object
+            && !scene.material_of(t as u32).is_emitter()
+            && scene.shape == Shape::Triangles
     }
 }
 

@@ -52,6 +52,7 @@ impl ElementMesh {
         for (k, (surface, patch)) in surfaces[..count].iter().zip(&patches).enumerate() {
             let (uv, back) = (on_patch[k].1, point(k).back);
             let (cell, within) = cells::locate(uv, patch.divisions);
+            let within = self.clusters.piece(point(k).triangle).map_or(within, |piece| piece.within(within));
             let offset = if back { cells::count(patch.divisions) } else { 0 };
             each(k, (surface.two_sided || !back).then_some((patch.first + offset + cell, within)));
         }

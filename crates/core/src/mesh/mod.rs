@@ -2,7 +2,9 @@
 //!
 //! Surfaces are traced, elements are scored. A triangle is one *patch*, or if it is a needle several (see [`slices`]); a patch
 //! with `m` divisions is cut into `m²` congruent elements (see [`cells`]), or split into four patches (see [`parts`]). So a hit's
-//! barycentric coordinates lead to its element in O(1), or O(depth) where the mesh follows the light, and area and normal need no storage of their own. A two-sided triangle has two sets of elements back to back. Elements
+//! barycentric coordinates lead to its element in O(1), or O(depth) where the mesh follows the light, and area and normal need no storage
+//! of their own. Where triangles are smaller than elements should be, an element is a *cluster* of whole triangles instead (see
+//! [`clusters`]), each of which is a patch of one cell. A two-sided triangle has two sets of elements back to back. Elements
 //! are numbered triangle by triangle along a space-filling curve, so neighbouring numbers are neighbours in space: rays shot
 //! in the order of elements have sorted origins.
 
@@ -10,7 +12,9 @@ mod average;
 mod build;
 pub mod cells;
 mod clip;
+mod clusters;
 mod cut;
+mod grow;
 mod locate;
 mod lookup;
 mod mip;
@@ -21,6 +25,7 @@ mod slices;
 mod sparse;
 mod triangle;
 
+pub use clusters::{Cluster, Piece};
 pub use cut::{Cut, MOST_ELEMENTS};
 pub use locate::{Point, TOGETHER};
 pub use lookup::{LANES, Lookup};
@@ -32,6 +37,7 @@ pub(crate) use triangle::surface_area;
 
 use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
+use clusters::Clusters;
 use glam::{Vec2, Vec3};
 use parts::Part;
 use sparse::SparseColors;
@@ -44,7 +50,8 @@ pub struct ElementMesh {
     patches: Vec<Patch>,
     /// Where the patches lie that are parts of others, the last ones.
     parts: Vec<Part>,
-    /// Patch of every element.
+    clusters: Clusters,
+    /// Patch of every element; of a cluster that of its largest triangle.
     patch: Vec<u32>,
     reflectivity: Vec<Rgb>,
     emission: SparseColors,
@@ -67,11 +74,11 @@ struct Patch {
     first: u32,
     /// None if it is split.
     divisions: u16,
-    /// Area of each element [m²].
+    /// Area of each element [m²]; of a cluster that of all its triangles.
     element_area: f32,
 }
 
-/// Where an element lies on its triangle.
+/// Where an element lies on its triangle, or on one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     pub triangle: u32,
@@ -97,7 +104,7 @@ impl ElementMesh {
         0..self.len() as u32
     }
 
-    /// Triangle on which element `e` lies.
+    /// Triangle on which element `e` lies; the largest of a cluster, whose triangles all belong to one object.
     pub fn triangle(&self, e: u32) -> u32 {
         self.patch_of(e).triangle
     }
@@ -122,13 +129,15 @@ impl ElementMesh {
         self.emission(e) * self.area(e)
     }
 
-    /// Unit normal of the side on which the element lies (of the flat triangle; see [`crate::geometry::Geometry`] for curved surfaces).
+    /// Unit normal of the side on which the element lies (of the flat triangle, see [`crate::geometry::Geometry`] for curved surfaces;
+    /// of the largest of a cluster).
     pub fn normal(&self, e: u32) -> Vec3 {
         let place = self.place(e);
         let front = self.surfaces[place.triangle as usize].normal;
         if place.back { -front } else { front }
     }
 
+    /// Where element `e` lies; of a cluster its largest triangle, see [`ElementMesh::pieces`] for all.
     pub fn place(&self, e: u32) -> Place {
         let (patch, Patch { triangle, first, divisions, .. }) = (self.patch[e as usize], *self.patch_of(e));
         let (offset, per_side) = (e - first, cells::count(divisions));
@@ -153,6 +162,7 @@ impl ElementMesh {
         let (patch, uv) = self.leaf_at(surface.first_patch + patch, uv);
         let patch = &self.patches[patch as usize];
         let (cell, within) = cells::locate(uv, patch.divisions);
+        let within = self.clusters.piece(triangle).map_or(within, |piece| piece.within(within));
         let offset = if back { cells::count(patch.divisions) } else { 0 };
         Some((patch.first + offset + cell, within))
     }
@@ -185,13 +195,18 @@ impl ElementMesh {
         corner + uv.x * along + uv.y * across
     }
 
-    /// Barycentric coordinates on its triangle of the three corners of element `e`.
+    /// Barycentric coordinates on its triangle of the three corners of element `e`; of a cluster those of its largest triangle.
     pub fn corners(&self, e: u32) -> [Vec2; 3] {
-        let Place { patch, cell, .. } = self.place(e);
+        self.corners_at(self.place(e))
+    }
+
+    /// Barycentric coordinates on its triangle of the three corners of a place.
+    pub fn corners_at(&self, Place { patch, cell, .. }: Place) -> [Vec2; 3] {
         cells::corners(cell, self.divisions(patch)).map(|uv| self.on_triangle(patch, uv))
     }
 
-    /// Where element `e` lies, and in barycentric coordinates on its triangle: a corner, and the edges from it.
+    /// Where element `e` lies, and in barycentric coordinates on its triangle: a corner, and the edges from it. For an element that is
+    /// no cluster.
     pub fn place_and_edges(&self, e: u32) -> (Place, [Vec2; 3]) {
         let place = self.place(e);
         let (corner, length) = cells::frame(place.cell, self.divisions(place.patch));
@@ -199,12 +214,10 @@ impl ElementMesh {
         (place, [a + corner.x * along + corner.y * across, length * along, length * across])
     }
 
-    /// Barycentric coordinates on its triangle of the point of element `e` that belongs to `s` in the unit square;
+    /// Triangle, and barycentric coordinates on it, of the point of element `e` that belongs to `s` in the unit square;
     /// area preserving.
-    pub fn point(&self, e: u32, s: Vec2) -> Vec2 {
-        let [a, b, c] = self.corners(e);
-        let uv = square_to_triangle(s);
-        a + uv.x * (b - a) + uv.y * (c - a)
+    pub fn point(&self, e: u32, s: Vec2) -> (u32, Vec2) {
+        self.on_element(e, square_to_triangle(s))
     }
 
     /// How the triangles were cut: with it the same elements can be made again.
@@ -215,7 +228,7 @@ impl ElementMesh {
             slices.push(surface.slices);
             surface.patches().for_each(|patch| self.divisions_below(patch, &mut divisions));
         }
-        Cut { slices, divisions }
+        Cut { slices, divisions, leaders: self.clusters.leaders() }
     }
 
     pub fn is_two_sided(&self, triangle: u32) -> bool {
@@ -230,8 +243,10 @@ impl ElementMesh {
     /// Areas [m²] of all elements, and how many in turn have each.
     pub fn areas(&self) -> impl Iterator<Item = (f32, u32)> + Clone + '_ {
         let sides = |patch: &Patch| if self.is_two_sided(patch.triangle) { 2 } else { 1 };
-        let patches = self.patches.iter().filter(|patch| !patch.is_split());
-        patches.map(move |patch| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
+        // Of the patches of a cluster only the one that stands for it.
+        let counts = |(number, patch): &(u32, &Patch)| !patch.is_split() && self.patch[patch.first as usize] == *number;
+        let patches = (0..).zip(&self.patches).filter(counts);
+        patches.map(move |(_, patch)| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
     }
 
     /// Total emitted flux of the surfaces [lm] per channel.

@@ -114,11 +114,11 @@ mod tests {
     fn split() -> (Scene, Cut) {
         let mut scene = builtin("office").unwrap();
         (0..).zip(&mut scene.materials).for_each(|(k, material)| material.two_sided = k % 2 == 0);
-        let Cut { slices, divisions } = Resolution::Elements(2000).cut(&scene).unwrap();
+        let Cut { slices, divisions, leaders } = Resolution::Elements(2000).cut(&scene).unwrap();
         let mut state = 1;
         let roots = divisions.len();
         let split = (0..roots).flat_map(|root| tree(if root % 50 == 0 { 9 } else { 2 }, &mut state)).collect();
-        (scene, Cut { slices, divisions: split })
+        (scene, Cut { slices, divisions: split, leaders })
     }
 
     /// Divisions of a patch that is split at random, `depth` times at most.
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn bad_trees_are_refused() {
         let (scene, cut) = split();
-        let divisions = |divisions: Vec<u16>| Cut { slices: cut.slices.clone(), divisions };
+        let divisions = |divisions: Vec<u16>| Cut { divisions, ..cut.clone() };
         let endless = divisions(vec![0; 1_000_000]);
         let short = divisions(cut.divisions[..cut.divisions.len() - 1].to_vec());
         let long = divisions([&cut.divisions[..], &[1]].concat());

@@ -1,6 +1,7 @@
 //! How finely each triangle is cut.
 
 use super::cut::{Cut, MOST_ELEMENTS, sides};
+use super::grow::Neighbourhood;
 use super::slices::Slices;
 use super::triangle::{height, longest_edge, shortest_edge, surface_area};
 use crate::Error;
@@ -18,12 +19,15 @@ pub enum Resolution {
     MaxEdge(f32),
     /// One element for each side of every triangle, and this many more.
     Extra(u64),
+    /// As close to this number of elements as it comes from below, whatever the number of triangles: those much smaller than
+    /// elements are put together ([`super::grow`]), as far as surfaces are smooth and connected.
+    Clustered(u64),
 }
 
 impl Default for Resolution {
-    /// Room for shadows on large walls without drowning in elements.
+    /// Room for shadows on large walls without drowning in elements, however finely things are modelled.
     fn default() -> Resolution {
-        Resolution::Extra(400_000)
+        Resolution::Clustered(400_000)
     }
 }
 
@@ -39,7 +43,7 @@ impl Resolution {
     /// Most elements that `scene` is cut into, if that is what is said.
     pub fn most(self, scene: &Scene) -> Option<u64> {
         match self {
-            Resolution::Elements(elements) => Some(elements),
+            Resolution::Elements(elements) | Resolution::Clustered(elements) => Some(elements),
             Resolution::Extra(more) => Some(Resolution::least(scene).saturating_add(more)),
             Resolution::MaxEdge(_) => None,
         }
@@ -61,10 +65,11 @@ impl Resolution {
     /// [`Error::TooManyElements`]; [`Error::Parameter`] for zero elements or an edge that is not positive.
     pub fn cut(self, scene: &Scene) -> Result<Cut, Error> {
         match self {
-            Resolution::Elements(0) => {
+            Resolution::Elements(0) | Resolution::Clustered(0) => {
                 Err(Error::Parameter { name: "elements", value: "0".into(), allowed: "ask for at least one element" })
             }
             Resolution::Elements(target) => cut_for_target(scene, target),
+            Resolution::Clustered(target) => cut_with_clusters(scene, target),
             Resolution::Extra(more) => cut_for_target(scene, Resolution::least(scene).saturating_add(more)),
             Resolution::MaxEdge(edge) if edge > 0.0 && edge.is_finite() => {
                 let edge = f64::from(edge);
@@ -85,24 +90,47 @@ impl Resolution {
     }
 }
 
-/// Bisects the edge length until the number of elements is as close below `target` as it gets.
+/// The cut whose number of elements is as close below `target` as it gets.
 fn cut_for_target(scene: &Scene, target: u64) -> Result<Cut, Error> {
     if target > MOST_ELEMENTS {
         return Err(Error::TooManyElements { asked: target, limit: MOST_ELEMENTS });
     }
+    let few = |edge: f64| elements(scene, edge, |corners| economical(corners, edge)) <= target;
     let longest = (0..scene.triangles.len() as u32).map(|t| longest_edge(scene.corners(t))).fold(0.0, f64::max);
-    let (mut fine, mut coarse) = (longest / MOST_DIVISIONS, longest.max(f64::MIN_POSITIVE));
-    for _ in 0..40 {
-        let middle = (fine * coarse).sqrt();
-        if elements(scene, middle, |corners| economical(corners, middle)) > target {
-            fine = middle;
-        } else {
-            coarse = middle;
-        }
-    }
-    let cut = cut(scene, coarse, |corners| economical(corners, coarse));
+    let edge = least_edge([longest / MOST_DIVISIONS, longest], 40, few);
+    let cut = cut(scene, edge, |corners| economical(corners, edge));
     cut.element_count(scene)?;
     Ok(cut)
+}
+
+/// The same with clusters. Their number falls as edges grow, as good as always: at worst there are a few elements fewer.
+fn cut_with_clusters(scene: &Scene, target: u64) -> Result<Cut, Error> {
+    let whole = cut_for_target(scene, target)?;
+    let neighbourhood = Neighbourhood::new(scene);
+    let clustered = |edge: f64| {
+        let cut = cut(scene, edge, |corners| economical(corners, edge));
+        Cut { leaders: neighbourhood.leaders(&cut, edge), ..cut }
+    };
+    let few = |edge: f64| clustered(edge).element_count(scene).is_ok_and(|count| count as u64 <= target);
+    // Clusters may be as large as the scene.
+    let (low, high) = scene.bounds();
+    let size = 2.0 * f64::from(low.distance(high)).min(f64::from(f32::MAX));
+    let cut = clustered(least_edge([size / MOST_DIVISIONS, size], 14, few));
+    Ok(if cut.leaders.is_empty() { whole } else { cut })
+}
+
+/// Bisects the edge length [m] for the least that is long enough for `few` elements, the longest if none is.
+fn least_edge([shortest, longest]: [f64; 2], steps: u32, few: impl Fn(f64) -> bool) -> f64 {
+    let (mut fine, mut coarse) = (shortest, longest.max(f64::MIN_POSITIVE));
+    for _ in 0..steps {
+        let middle = (fine * coarse).sqrt();
+        if few(middle) {
+            coarse = middle;
+        } else {
+            fine = middle;
+        }
+    }
+    coarse
 }
 
 /// Cuts into slices about `edge` high, and every patch into as many divisions as `of_patch` says.
@@ -110,7 +138,7 @@ fn cut(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16) -> Cut {
     let slices: Vec<Slices> = (0..scene.triangles.len() as u32).map(|t| slices(scene.corners(t), edge)).collect();
     let patches = slices.iter().enumerate().flat_map(|(t, &slices)| patches(scene.corners(t as u32), slices));
     let divisions = patches.map(of_patch).collect();
-    Cut { slices, divisions }
+    Cut { slices, divisions, leaders: Vec::new() }
 }
 
 /// Number of elements of that cut; a triangle without an edge longer than `edge` is one.

@@ -7,7 +7,7 @@ use crate::Problem;
 use crate::geometry::{Facet, Ray};
 use crate::math::Frame;
 use crate::math::warp::square_to_cosine_hemisphere;
-use crate::mesh::Place;
+use crate::mesh::{Cluster, Place};
 use crate::sampling::Sample;
 use glam::{Vec2, Vec3};
 
@@ -20,6 +20,8 @@ pub struct Departure<'a> {
     /// Barycentric coordinates on the triangle of one corner, and the edges from it.
     corner: Vec2,
     edges: [Vec2; 2],
+    /// All triangles, if there are several.
+    cluster: Option<Cluster<'a>>,
     footprint: Footprint,
     /// Distance [m] by which origins are lifted off the surface.
     lift: f32,
@@ -47,9 +49,11 @@ impl<'a> Departure<'a> {
     /// Lines from the part of `element` that `footprint` covers.
     pub fn new(problem: &'a Problem, element: u32, footprint: Footprint) -> Departure<'a> {
         let (Place { triangle, back, .. }, [corner, along, across]) = problem.mesh.place_and_edges(element);
-        let flat = problem.geometry.facet(triangle).map(|facet| (facet, frame(facet.normal, back)));
+        let cluster = problem.mesh.cluster(element);
+        let facet = problem.geometry.facet(triangle).filter(|_| cluster.is_none());
+        let flat = facet.map(|facet| (facet, frame(facet.normal, back)));
         let lift = problem.geometry.lift();
-        Departure { problem, triangle, back, corner, edges: [along, across], footprint, lift, flat }
+        Departure { problem, triangle, back, corner, edges: [along, across], cluster, footprint, lift, flat }
     }
 
     /// The local line that belongs to `sample`: its first two numbers choose the point, the others the direction.
@@ -64,16 +68,19 @@ impl<'a> Departure<'a> {
     }
 
     fn start_and_frame(&self, uv: Vec2) -> (Start, Frame) {
-        let uv = self.corner + uv.x * self.edges[0] + uv.y * self.edges[1];
+        let (triangle, uv) = match self.cluster {
+            None => (self.triangle, self.corner + uv.x * self.edges[0] + uv.y * self.edges[1]),
+            Some(cluster) => cluster.point(uv),
+        };
         let (point, frame) = match self.flat {
             Some((facet, frame)) => (facet.at(uv), frame),
             None => {
-                let (point, front) = self.problem.geometry.surface(self.triangle, uv);
+                let (point, front) = self.problem.geometry.surface(triangle, uv);
                 (point, frame(front, self.back))
             }
         };
         let normal = frame.z;
-        (Start { origin: point + normal * self.lift, normal, triangle: self.triangle }, frame)
+        (Start { origin: point + normal * self.lift, normal, triangle }, frame)
     }
 }
 

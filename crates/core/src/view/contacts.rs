@@ -187,7 +187,7 @@ mod tests {
         };
         let light = |e: u32| Rgb::grey(light(middle(e)));
         let field = VertexField::new(&problem, &solution(problem.mesh.elements().map(light).collect()));
-        let of_element = |e: u32| field.vertices_of(&problem, e);
+        let of_element = |e: u32| field.vertices_at(&problem, problem.mesh.place(e));
         let floor = problem.mesh.elements().filter(|&e| problem.object(e) == 0);
         floor.flat_map(of_element).map(|v| (field.position(v), field.irradiance(v).g)).collect()
     }

@@ -74,10 +74,10 @@ fn open_share(problem: &Problem, solution: &Solution, e: u32, around: f32) -> f3
 
 /// Point `k` of element `e`, lifted off the surface, looking along the normal.
 fn start(problem: &Problem, e: u32, k: u32) -> Ray {
-    let place = problem.mesh.place(e);
-    let (position, front) = problem.geometry.surface(place.triangle, problem.mesh.point(e, plastic::point(0, k)));
-    let normal = if place.back { -front } else { front };
-    Ray { origin: position + problem.geometry.lift() * normal, direction: normal, from: place.triangle }
+    let (triangle, uv) = problem.mesh.point(e, plastic::point(0, k));
+    let (position, front) = problem.geometry.surface(triangle, uv);
+    let normal = if problem.mesh.place(e).back { -front } else { front };
+    Ray { origin: position + problem.geometry.lift() * normal, direction: normal, from: triangle }
 }
 
 /// Whether `hit` shows less light than `darkness` [lm/m²]. The open is not dark: who can see it can be seen from it.

@@ -2,7 +2,7 @@
 //!
 //! A side with m divisions has (m + 1)(m + 2) / 2 grid points. Point (i, j) lies at the barycentric coordinates
 //! (i / m, j / m) of the patch; row i holds the points (i, 0) ... (i, m - i). A point on an edge that two patches share is counted
-//! once for each of them: which of these are the same place on the same surface is for [`super::weld`] and
+//! once for each of them: which of these are the same place on the same surface is for [`crate::math::weld`] and
 //! [`super::crease`] to say.
 
 use crate::mesh::{ElementMesh, Place, cells};
@@ -53,9 +53,8 @@ impl Grid {
         self.first[side.patch as usize] + back + row + j as usize
     }
 
-    /// Numbers of the three corners of element `e`, in the orientation of the triangle's front.
-    pub fn corners_of_element(&self, mesh: &ElementMesh, e: u32) -> [usize; 3] {
-        let Place { patch, back, cell, .. } = mesh.place(e);
+    /// Numbers of the three corners of a place where an element lies, in the orientation of the triangle's front.
+    pub fn corners_at(&self, mesh: &ElementMesh, Place { patch, back, cell, .. }: Place) -> [usize; 3] {
         let corners = cells::grid_corners(cell, mesh.divisions(patch));
         corners.map(|ij| self.number(mesh, Side { patch, back }, ij))
     }

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! Solution --vertex_field--> VertexField --picture--> Picture (cd/m², and tone-mapped for a screen)
-//!    weld, crease, contacts: which corners are one vertex      camera_rays, default_view: where from
+//!    crease, contacts: which element corners are one vertex    camera_rays, default_view: where from
 //!    neighbours, smooth: noise taken out (of tables, too)      surface_light, tone: what is seen there
-//!    cover, seams: what the value of a vertex is
+//!    cover, pycnophylactic, seams: what the value of a vertex is
 //! ```
 
 pub mod camera_rays;
@@ -16,13 +16,13 @@ mod grid;
 pub(crate) mod neighbours;
 pub mod picture;
 mod plastic;
+mod pycnophylactic;
 mod seams;
 pub mod smooth;
 pub mod surface_light;
 pub mod tone;
 pub mod vertex_field;
 pub(crate) mod vertices;
-pub(crate) mod weld;
 
 pub use picture::{Picture, ViewOptions, exposure, render, render_field};
 pub use seams::EdgePoints;

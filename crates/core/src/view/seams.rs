@@ -8,8 +8,9 @@
 use super::contacts::Contacts;
 use super::crease::CREASE_ANGLE;
 use super::grid::{self, Side};
-use super::vertices::{Vertices, WELD_TOLERANCE, group_by};
+use super::vertices::{Vertices, group_by};
 use crate::Problem;
+use crate::math::weld;
 use glam::{IVec3, Vec2, Vec3};
 
 /// A vertex that takes the value `(1 - t) value[from] + t value[to]`.
@@ -142,7 +143,7 @@ fn visit_crossings(
     position: impl Fn(u32) -> Vec3,
     mut visit: impl FnMut(&Piece, &End, f32),
 ) {
-    let tolerance = 4.0 * WELD_TOLERANCE * problem.geometry.bounding_sphere().1;
+    let tolerance = 4.0 * weld::TOLERANCE * problem.geometry.bounding_sphere().1;
     let ends = ends(pieces);
     let buckets = Buckets::new(&position, &ends, pieces);
     for piece in pieces {

@@ -3,16 +3,17 @@
 //! A solution has one value for every element and noise in it. The field's value at a vertex is the mean of the elements
 //! that touch it, weighted with their open areas ([`super::cover`]), after differences that the error bars cannot tell from
 //! noise were taken out ([`super::smooth`]). Vertices are shared where surfaces meet smoothly ([`super::crease`]), so
-//! furniture looks round and edges between walls stay sharp, and T-vertices follow the edge they lie on
+//! furniture looks round and edges between walls stay sharp, light runs on inside elements of many triangles
+//! ([`super::pycnophylactic`]), and T-vertices follow the edge they lie on
 //! ([`super::seams`]). Area weights, not the inverse variances of the elements: a value that is low by chance has a small
 //! error bar as well, and would be believed too much.
 
 use super::grid::Side;
 use super::seams::EdgePoints;
 use super::vertices::Vertices;
-use super::{cover, seams, smooth};
+use super::{cover, pycnophylactic, seams, smooth};
 use crate::math::Rgb;
-use crate::mesh::cells;
+use crate::mesh::{Place, cells};
 use crate::{Problem, Solution};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -60,7 +61,8 @@ impl VertexField {
     fn of_values(problem: &Problem, vertices: Vertices, values: &[Rgb], open: &[f32]) -> VertexField {
         let weight = |e: u32| problem.mesh.area(e) * open[e as usize];
         let mean = |v: u32| vertex_mean(vertices.touching(v), values, weight);
-        let irradiance = (0..vertices.len() as u32).into_par_iter().map(mean).collect();
+        let mut irradiance: Vec<Rgb> = (0..vertices.len() as u32).into_par_iter().map(mean).collect();
+        pycnophylactic::interpolate(problem, &vertices, values, &mut irradiance);
         VertexField { vertices, irradiance }
     }
 
@@ -93,9 +95,9 @@ impl VertexField {
         self.len() == 0
     }
 
-    /// Vertices at the corners of element `e`, in the orientation of the triangle's front.
-    pub fn vertices_of(&self, problem: &Problem, e: u32) -> [u32; 3] {
-        self.vertices.of_element(problem, e)
+    /// Vertices at the corners of a place where an element lies, in the orientation of the triangle's front.
+    pub fn vertices_at(&self, problem: &Problem, place: Place) -> [u32; 3] {
+        self.vertices.at(problem, place)
     }
 
     /// Irradiance [lux] at vertex `v`.
@@ -203,7 +205,7 @@ mod tests {
     fn a_flat_wall_has_no_seam_where_patches_are_split() {
         // Each half split unevenly, twice and three times; beside whole parts that are cut finer and coarser.
         let split = vec![0, 0, 1, 0, 2, 1, 4, 1, 1, 2, 4, 1, 1, 0, 0, 1, 1, 1, 2, 1, 1, 8];
-        let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: split };
+        let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: split, leaders: Vec::new() };
         let (problem, field) = field_of_cut(square(), &cut, |p| 10.0 + 3.0 * p.x - p.y + 2.0 * (9.0 * p.x * p.y).sin());
         let mesh = &problem.mesh;
         let light = |triangle, uv| field.irradiance_at(&problem, triangle, uv, false).g;
@@ -273,7 +275,9 @@ mod tests {
         assert_eq!(field.len(), 24);
         for e in problem.mesh.elements() {
             let expected = Rgb::grey((problem.mesh.triangle(e) / 2 + 1) as f32);
-            assert!(field.vertices_of(&problem, e).iter().all(|&v| field.irradiance(v) == expected));
+            assert!(
+                field.vertices_at(&problem, problem.mesh.place(e)).iter().all(|&v| field.irradiance(v) == expected)
+            );
         }
     }
 
@@ -317,8 +321,10 @@ mod tests {
         let scene = scene(&polygons);
         let problem = Problem::with_cut(scene, &Cut::regular(&[&[16u16, 16][..], &[1; 10][..]].concat())).unwrap();
         let share_lit = |e: u32| {
-            let at =
-                |k| problem.geometry.surface(problem.mesh.triangle(e), problem.mesh.point(e, plastic::point(9, k))).0;
+            let at = |k| {
+                let (triangle, uv) = problem.mesh.point(e, plastic::point(9, k));
+                problem.geometry.surface(triangle, uv).0
+            };
             (0..400).filter(|&k| !inside(at(k))).count() as f32 / 400.0
         };
         let light = problem

@@ -3,12 +3,10 @@
 use super::contacts::Contacts;
 use super::crease;
 use super::grid::{self, Grid};
-use super::weld::Weld;
 use crate::Problem;
+use crate::math::weld::{self, Weld};
+use crate::mesh::Place;
 use glam::Vec3;
-
-/// Points closer than this share of the scene's radius are one: some ten times the rounding of a coordinate.
-pub const WELD_TOLERANCE: f32 = 4e-6;
 
 /// Which grid points share a vertex, and which elements touch it. Edges between walls keep a vertex for each wall,
 /// smooth surfaces share theirs, whatever objects and materials they belong to.
@@ -33,10 +31,13 @@ impl Vertices {
         let (place_of_grid_point, normals, positions) = places(problem, &grid);
         let (mut of_grid_point, mut places) = split_at_creases(&place_of_grid_point, &normals, positions.len());
         Contacts::new(problem).divide(problem, &grid, &place_of_grid_point, &mut of_grid_point, &mut places);
-        let of_element = |e: u32| grid.corners_of_element(mesh, e).map(|g| of_grid_point[g]);
-        let (first, touching) = group_by(places.len(), 3 * mesh.len(), |k| of_element(k as u32 / 3)[k % 3]);
-        let touching = touching.into_iter().map(|k| (k / 3) as u32).collect();
-        Vertices { grid, of_grid_point, positions, places, first, touching }
+        let mut vertices = Vertices { grid, of_grid_point, positions, places, first: Vec::new(), touching: Vec::new() };
+        let touched = |e: u32| vertices.of_element(problem, e).into_iter().map(move |v| (v, e));
+        let pairs: Vec<(u32, u32)> = mesh.elements().flat_map(touched).collect();
+        let (first, sorted) = group_by(vertices.len(), pairs.len(), |k| pairs[k].0);
+        vertices.first = first;
+        vertices.touching = sorted.into_iter().map(|k| pairs[k].1).collect();
+        vertices
     }
 
     pub fn len(&self) -> usize {
@@ -63,9 +64,19 @@ impl Vertices {
         self.of_grid_point[number]
     }
 
-    /// Vertices at the corners of element `e`, in the orientation of the triangle's front.
-    pub fn of_element(&self, problem: &Problem, e: u32) -> [u32; 3] {
-        self.grid.corners_of_element(&problem.mesh, e).map(|g| self.of_grid_point[g])
+    /// Vertices at the corners of a place where an element lies, in the orientation of the triangle's front.
+    pub fn at(&self, problem: &Problem, place: Place) -> [u32; 3] {
+        self.grid.corners_at(&problem.mesh, place).map(|g| self.of_grid_point[g])
+    }
+
+    /// Vertices that element `e` touches: its three corners, or all at the corners of a cluster's triangles, each once.
+    pub fn of_element(&self, problem: &Problem, e: u32) -> Vec<u32> {
+        let mut touched: Vec<u32> = problem.mesh.pieces(e).flat_map(|place| self.at(problem, place)).collect();
+        if problem.mesh.cluster(e).is_some() {
+            touched.sort_unstable();
+            touched.dedup();
+        }
+        touched
     }
 
     /// Elements that touch vertex `v`.
@@ -77,7 +88,7 @@ impl Vertices {
 /// Place (welded position) and normal of every grid point, and the positions [m] of the places.
 fn places(problem: &Problem, grid: &Grid) -> (Vec<u32>, Vec<Vec3>, Vec<Vec3>) {
     let radius = problem.geometry.bounding_sphere().1;
-    let mut weld = Weld::new((WELD_TOLERANCE * radius).max(f32::MIN_POSITIVE));
+    let mut weld = Weld::new((weld::TOLERANCE * radius).max(f32::MIN_POSITIVE));
     let mut places = Vec::with_capacity(grid.len());
     let mut normals = Vec::with_capacity(grid.len());
     for side in grid.sides(&problem.mesh) {

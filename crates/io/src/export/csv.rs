@@ -71,8 +71,11 @@ mod tests {
 
     #[test]
     fn the_table_reads_back_as_the_solution() {
-        let (problem, solution) = fixture::lit_box();
-        let bytes = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
+        [fixture::lit_box(), fixture::lit_ball()].iter().for_each(|(problem, solution)| reads_back(problem, solution));
+    }
+
+    fn reads_back(problem: &Problem, solution: &Solution) {
+        let bytes = write(&LitScene::new(problem, solution), &ExportOptions::default()).unwrap();
         let mut reader = csv::Reader::from_reader(&bytes[..]);
         let header = reader.headers().unwrap().clone();
         let column = |name: &str| header.iter().position(|n| n == name).expect(name);
@@ -82,7 +85,7 @@ mod tests {
             let value = |name: &str| row[column(name)].parse::<f32>().unwrap();
             assert_eq!(value("irradiance_g [lux]"), solution.irradiance[e].g);
             assert_eq!(value("irradiance_luminance [lux]"), solution.irradiance[e].luminance());
-            assert_eq!(value("radiosity_b [lm/m²]"), solution.radiosity(&problem, e as u32).b);
+            assert_eq!(value("radiosity_b [lm/m²]"), solution.radiosity(problem, e as u32).b);
             assert_eq!(value("std_error_r [lux]").to_bits(), solution.std_error[e].r.to_bits());
             assert_eq!(value("area [m²]"), problem.mesh.area(e as u32));
             let place = problem.mesh.place(e as u32);

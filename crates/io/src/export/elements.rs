@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use isolux_core::math::Rgb;
+use isolux_core::mesh::Place;
 use isolux_core::view::smooth::SMOOTHED;
 use isolux_core::{Problem, Solution};
 
@@ -50,19 +51,36 @@ pub const RADIOSITY: Quantity = Quantity {
     of: |problem, solution, e| solution.radiosity(problem, e),
 };
 
-/// World positions [m] of the corners of element `e` on the true surface, counter-clockwise seen from the side it is on.
-pub fn corners(problem: &Problem, e: u32) -> [Vec3; 3] {
-    let place = problem.mesh.place(e);
-    let [a, b, c] = problem.mesh.corners(e).map(|uv| problem.geometry.surface(place.triangle, uv).0);
+/// The triangles that show all elements, each with the number of its element: one an element, and several for a cluster.
+pub fn pieces(problem: &Problem) -> impl Iterator<Item = (u32, Place)> + Clone {
+    problem.mesh.elements().flat_map(|e| problem.mesh.pieces(e).map(move |place| (e, place)))
+}
+
+/// World positions [m] of the corners of a piece on the true surface, counter-clockwise seen from the side it is on.
+pub fn corners(problem: &Problem, place: Place) -> [Vec3; 3] {
+    let [a, b, c] = problem.mesh.corners_at(place).map(|uv| problem.geometry.surface(place.triangle, uv).0);
     if place.back { [a, c, b] } else { [a, b, c] }
 }
 
-/// World position [m] in the middle of element `e`, and the unit normal of its side there.
+/// World position [m] in the middle of element `e`, and the unit normal of its side there; the means over a cluster.
 pub fn centre(problem: &Problem, e: u32) -> (Vec3, Vec3) {
-    let place = problem.mesh.place(e);
-    let [a, b, c] = problem.mesh.corners(e);
-    let (position, normal) = problem.geometry.surface(place.triangle, (a + b + c) / 3.0);
-    (position, if place.back { -normal } else { normal })
+    let middle = |place: Place| {
+        let [a, b, c] = problem.mesh.corners_at(place);
+        let (position, normal) = problem.geometry.surface(place.triangle, (a + b + c) / 3.0);
+        (position, if place.back { -normal } else { normal })
+    };
+    let first = middle(problem.mesh.place(e));
+    let Some(cluster) = problem.mesh.cluster(e) else { return first };
+    let shares = cluster.pieces().iter().map(|piece| piece.share());
+    let (position, normal) = problem
+        .mesh
+        .pieces(e)
+        .map(middle)
+        .zip(shares)
+        .fold((Vec3::ZERO, Vec3::ZERO), |(position, normal), ((p, n), share)| {
+            (position + share * p, normal + share * n)
+        });
+    (position, normal.normalize_or(first.1))
 }
 
 /// For comments: `, smoothed within the error bars`, if the noise was taken out of the numbers.
@@ -92,17 +110,32 @@ pub fn display_colors(problem: &Problem, solution: &Solution) -> Vec<[u8; 3]> {
 mod tests {
     use super::*;
     use crate::fixture;
+    use glam::Vec2;
 
     #[test]
     fn corners_run_counter_clockwise_round_the_normal_of_each_side() {
         let (problem, _) = fixture::lit_box();
         for e in problem.mesh.elements() {
-            let [a, b, c] = corners(&problem, e);
+            let [a, b, c] = corners(&problem, problem.mesh.place(e));
             let cross = (b - a).cross(c - a);
             let (position, normal) = centre(&problem, e);
             assert!(cross.normalize().distance(normal) < 1e-5, "element {e}");
             assert!((0.5 * cross.length() - problem.mesh.area(e)).abs() < 1e-5, "element {e}");
             assert!(((a + b + c) / 3.0).distance(position) < 1e-5, "element {e}");
+        }
+    }
+
+    #[test]
+    fn the_middle_of_a_cluster_is_that_of_its_points() {
+        let (problem, _) = fixture::lit_ball();
+        for e in problem.mesh.elements() {
+            let square = |k: u32| Vec2::new((k % 50) as f32 + 0.5, (k / 50) as f32 + 0.5) / 50.0;
+            let points = (0..2500).map(|k| problem.mesh.point(e, square(k)));
+            let mean = points.map(|(t, uv)| problem.geometry.surface(t, uv).0).sum::<Vec3>() / 2500.0;
+            let (position, normal) = centre(&problem, e);
+            let side = if problem.mesh.place(e).back { -1.0 } else { 1.0 };
+            assert!(mean.distance(position) < 0.01, "{mean} {position}");
+            assert!(normal.distance(side * (position - Vec3::ONE).normalize()) < 0.05, "{normal}");
         }
     }
 

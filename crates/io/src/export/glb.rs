@@ -15,6 +15,7 @@ use glam::{Mat3, Quat, Vec2, Vec3};
 use isolux_core::Problem;
 use isolux_core::math::Rgb;
 use isolux_core::math::color::linear_to_srgb;
+use isolux_core::mesh::Place;
 use isolux_core::scene::{Camera, Image, Object, Projection, Texture, Wrap};
 use isolux_core::view::{self, EdgePoints, Exposure, VertexField};
 use serde_json::{Value, json};
@@ -140,10 +141,12 @@ impl Writer<'_> {
             if self.is_inside(e) {
                 continue;
             }
-            let first = indices.len();
-            self.add_faces(e, skin, &mut vertices, &mut indices);
-            if self.problem.mesh.place(e).back {
-                indices[first..].reverse();
+            for place in self.problem.mesh.pieces(e) {
+                let first = indices.len();
+                self.add_faces(place, skin, &mut vertices, &mut indices);
+                if place.back {
+                    indices[first..].reverse();
+                }
             }
         }
         let mut attributes = json!({
@@ -174,20 +177,20 @@ impl Writer<'_> {
         light(back) < INSIDE * light(!back)
     }
 
-    /// Appends the triangles of element `e`, in the orientation of its front: one, or a fan about its centre if vertices of
-    /// its neighbours lie on its edges, so that no pinholes show there.
-    fn add_faces(&self, e: u32, skin: Option<Skin>, vertices: &mut Vertices, indices: &mut Vec<u32>) {
-        let shared = self.field.vertices_of(self.problem, e);
-        let place = shared.map(|v| self.field.place(v));
+    /// Appends the triangles at a place where an element lies, in the orientation of its front: one, or a fan about its centre if
+    /// vertices of its neighbours lie on its edges, so that no pinholes show there.
+    fn add_faces(&self, at: Place, skin: Option<Skin>, vertices: &mut Vertices, indices: &mut Vec<u32>) {
+        let shared = self.field.vertices_at(self.problem, at);
+        let corners = shared.map(|v| self.field.place(v));
         let mut outline = Vec::with_capacity(3);
         for k in 0..3 {
             let (from, to) = (CORNERS[k], CORNERS[(k + 1) % 3]);
-            outline.push((from, place[k]));
-            let between = self.edge_points.between(place[k], place[(k + 1) % 3]);
+            outline.push((from, corners[k]));
+            let between = self.edge_points.between(corners[k], corners[(k + 1) % 3]);
             outline.extend(between.into_iter().map(|(t, place)| (from.lerp(to, t), place)));
         }
         let corner = |(weights, place): &(Vec3, u32)| (*weights, self.field.position_of_place(*place));
-        let mut add = |(weights, position)| self.add_vertex(e, shared, weights, position, skin, vertices);
+        let mut add = |(weights, position)| self.add_vertex(at, shared, weights, position, skin, vertices);
         let outline: Vec<(Vec3, Vec3)> = outline.iter().map(corner).collect();
         let numbers: Vec<u32> = outline.iter().map(|point| add(*point)).collect();
         if let [a, b, c] = numbers[..] {
@@ -200,10 +203,10 @@ impl Writer<'_> {
         }
     }
 
-    /// The vertex at the given weights of the corners of element `e`.
+    /// The vertex at the given weights of the corners of a place where an element lies.
     fn add_vertex(
         &self,
-        e: u32,
+        at: Place,
         shared: [u32; 3],
         weights: Vec3,
         position: Vec3,
@@ -211,11 +214,10 @@ impl Writer<'_> {
         vertices: &mut Vertices,
     ) -> u32 {
         let scene = &self.problem.scene;
-        let triangle = self.problem.mesh.triangle(e);
-        let material = scene.material_of(triangle);
+        let material = scene.material_of(at.triangle);
         let on_element = |corners: [Vec2; 3]| corners.iter().zip(weights.to_array()).map(|(c, w)| *c * w).sum::<Vec2>();
-        let uv = on_element(self.problem.mesh.corners(e));
-        let corners = scene.triangles[triangle as usize].vertices.map(|v| &scene.vertices[v as usize]);
+        let uv = on_element(self.problem.mesh.corners_at(at));
+        let corners = scene.triangles[at.triangle as usize].vertices.map(|v| &scene.vertices[v as usize]);
         let of_triangle = [1.0 - uv.x - uv.y, uv.x, uv.y];
         let tint: Rgb = corners.iter().zip(of_triangle).map(|(c, w)| c.color * w).sum();
         let texture_uv = skin.map_or(Vec2::ZERO, |skin| {

@@ -1,6 +1,7 @@
 //! NumPy arrays in a ZIP archive; `numpy.load` reads them without pickle.
 //!
-//! With n elements and k objects: `vertices` (n, 3, 3) [m], corners counter-clockwise seen from the element's side;
+//! With n elements, k objects and p triangles that show the elements: `vertices` (p, 3, 3) [m], corners counter-clockwise seen from the
+//! element's side; `element` (p), the element that each triangle shows, which is 0, 1, 2 ... unless elements are made of several triangles;
 //! `area` (n) [m²]; `normal` (n, 3) of the side, in the middle of the element; `reflectivity`, `emission` [lm/m²],
 //! `irradiance` [lux], `std_error` [lux], `radiosity` [lm/m²], each (n, 3), red green blue; `object` (n), an index into
 //! `names` (k, text, cut off after 256 characters); `triangle` (n), its number in the scene file; `back` (n, boolean);
@@ -26,8 +27,11 @@ pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> 
     let n = mesh.len() as u64;
     let mut archive = Archive::new();
 
-    let corners = mesh.elements().flat_map(|e| elements::corners(problem, e)).flat_map(|p| p.to_array());
-    archive.floats("vertices", &[n, 3, 3], corners)?;
+    let pieces = elements::pieces(problem);
+    let p = pieces.clone().count() as u64;
+    let corners = pieces.clone().flat_map(|(_, place)| elements::corners(problem, place));
+    archive.floats("vertices", &[p, 3, 3], corners.flat_map(|p| p.to_array()))?;
+    archive.integers("element", p, pieces.map(|(e, _)| e))?;
     archive.floats("area", &[n], mesh.elements().map(|e| mesh.area(e)))?;
     let normals = mesh.elements().flat_map(|e| elements::centre(problem, e).1.to_array());
     archive.floats("normal", &[n, 3], normals)?;
@@ -97,12 +101,19 @@ impl Archive {
 mod tests {
     use super::*;
     use crate::fixture;
+    use isolux_core::{Problem, Solution};
     use std::io::Read;
 
     #[test]
     fn arrays_read_back_with_shape_and_values() {
-        let (problem, solution) = fixture::lit_box();
-        let bytes = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
+        let names =
+            [fixture::lit_box(), fixture::lit_ball()].map(|(problem, solution)| reads_back(&problem, &solution));
+        assert_eq!(names, ["größe", "ball"]);
+    }
+
+    /// The name of the last object.
+    fn reads_back(problem: &Problem, solution: &Solution) -> String {
+        let bytes = write(&LitScene::new(problem, solution), &ExportOptions::default()).unwrap();
         let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
         let mut array = |name: &str| {
             let mut npy = Vec::new();
@@ -116,9 +127,12 @@ mod tests {
         let expected: Vec<f32> = solution.irradiance.iter().flat_map(|c| c.to_array()).collect();
         assert_eq!(irradiance.into_vec::<f32>().unwrap(), expected);
         let npy = array("vertices");
-        assert_eq!(npyz::NpyFile::new(&npy[..]).unwrap().shape(), [n, 3, 3]);
+        let pieces: Vec<u32> = elements::pieces(problem).map(|(e, _)| e).collect();
+        assert_eq!(npyz::NpyFile::new(&npy[..]).unwrap().shape(), [pieces.len() as u64, 3, 3]);
+        let npy = array("element");
+        assert_eq!(npyz::NpyFile::new(&npy[..]).unwrap().into_vec::<u32>().unwrap(), pieces);
         let npy = array("names");
         let names: Vec<String> = npyz::NpyFile::new(&npy[..]).unwrap().into_vec().unwrap();
-        assert_eq!(names.iter().map(|n| n.trim_end_matches('\0')).next_back(), Some("größe"));
+        names.last().unwrap().trim_end_matches('\0').to_owned()
     }
 }

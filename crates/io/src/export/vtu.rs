@@ -1,5 +1,5 @@
-//! VTK XML unstructured grid, for ParaView, VisIt and meshio: one triangle cell for each element, with
-//! `Irradiance` and `StandardError` [lux], `Radiosity` and `Emission` [lm/m²] and `Reflectivity` in three channels, and
+//! VTK XML unstructured grid, for ParaView, VisIt and meshio: one triangle cell for each element, or for each triangle of an element that is
+//! made of several, with `Element`, its number, `Irradiance` and `StandardError` [lux], `Radiosity` and `Emission` [lm/m²] and `Reflectivity` in three channels, and
 //! `Object`, the number of an object, whose names are in a comment at the top.
 //!
 //! Numbers are appended to the XML as raw little-endian blocks, each after its length in 64 bits (VTK file formats,
@@ -19,21 +19,22 @@ const VTK_TRIANGLE: u8 = 5;
 /// None.
 pub fn write(lit: &LitScene, _: &ExportOptions) -> Result<Vec<u8>, Error> {
     let LitScene { problem, solution, .. } = lit;
-    let mesh = &problem.mesh;
-    let count = mesh.len();
+    let pieces = elements::pieces(problem);
+    let count = pieces.clone().count();
     let mut blocks = Blocks::default();
 
-    let corners = mesh.elements().flat_map(|e| elements::corners(problem, e)).flat_map(|p| p.to_array());
+    let corners = pieces.clone().flat_map(|(_, place)| elements::corners(problem, place)).flat_map(|p| p.to_array());
     let points = blocks.floats("Points", corners);
     let mut cells = blocks.array("connectivity", "Int64", 1, (0..3 * count as i64).flat_map(i64::to_le_bytes));
     cells += &blocks.array("offsets", "Int64", 1, (1..=count as i64).flat_map(|k| (3 * k).to_le_bytes()));
     cells += &blocks.array("types", "UInt8", 1, std::iter::repeat_n(VTK_TRIANGLE, count));
     let mut data = String::new();
     for quantity in [IRRADIANCE, STD_ERROR, RADIOSITY, REFLECTIVITY, EMISSION] {
-        let values = quantity.values(problem, solution).flat_map(|color| color.to_array());
+        let values = pieces.clone().flat_map(|(e, _)| (quantity.of)(problem, solution, e).to_array());
         data += &blocks.floats(quantity.title, values);
     }
-    let objects = mesh.elements().flat_map(|e| problem.object(e).to_le_bytes());
+    data += &blocks.array("Element", "UInt32", 1, pieces.clone().flat_map(|(e, _)| e.to_le_bytes()));
+    let objects = pieces.flat_map(|(e, _)| problem.object(e).to_le_bytes());
     data += &blocks.array("Object", "UInt32", 1, objects);
 
     let xml = format!(
@@ -103,8 +104,11 @@ mod tests {
 
     #[test]
     fn offsets_in_the_xml_lead_to_the_numbers() {
-        let (problem, solution) = fixture::lit_box();
-        let file = write(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
+        [fixture::lit_box(), fixture::lit_ball()].iter().for_each(|(problem, solution)| leads(problem, solution));
+    }
+
+    fn leads(problem: &Problem, solution: &Solution) {
+        let file = write(&LitScene::new(problem, solution), &ExportOptions::default()).unwrap();
         let marker = "encoding=\"raw\">\n_";
         let appended = find(&file, marker) + marker.len();
         let xml = std::str::from_utf8(&file[..appended]).unwrap();
@@ -114,11 +118,12 @@ mod tests {
             let length = u64::from_le_bytes(file[start..start + 8].try_into().unwrap()) as usize;
             file[start + 8..start + 8 + length].to_vec()
         };
-        let irradiance: Vec<u8> =
-            solution.irradiance.iter().flat_map(|c| c.to_array()).flat_map(f32::to_le_bytes).collect();
-        assert_eq!(block("Irradiance"), irradiance);
-        assert_eq!(block("types"), vec![VTK_TRIANGLE; problem.mesh.len()]);
-        assert_eq!(block("Points").len(), problem.mesh.len() * 36);
+        let pieces: Vec<u32> = elements::pieces(problem).map(|(e, _)| e).collect();
+        let of_pieces = pieces.iter().flat_map(|&e| solution.irradiance[e as usize].to_array());
+        assert_eq!(block("Irradiance"), of_pieces.flat_map(f32::to_le_bytes).collect::<Vec<u8>>());
+        assert_eq!(block("Element"), pieces.iter().flat_map(|e| e.to_le_bytes()).collect::<Vec<u8>>());
+        assert_eq!(block("types"), vec![VTK_TRIANGLE; pieces.len()]);
+        assert_eq!(block("Points").len(), pieces.len() * 36);
     }
 
     #[test]

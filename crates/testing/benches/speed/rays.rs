@@ -66,8 +66,8 @@ fn to_emitters(problem: &Problem, rays: &[Ray], random: &mut Random) -> (Vec<Ray
     for ray in rays.iter().cycle().take(100 * RAYS) {
         let area = end * random.uniform();
         let emitter = emitters[ends.partition_point(|&e| e <= area).min(emitters.len() - 1)];
-        let point = mesh.point(emitter, random.square());
-        let (target, _) = problem.geometry.surface(mesh.triangle(emitter), point);
+        let (triangle, point) = mesh.point(emitter, random.square());
+        let (target, _) = problem.geometry.surface(triangle, point);
         let way = target - ray.origin;
         let direction = way.normalize_or_zero();
         let normal = problem.geometry.surface(ray.from, glam::Vec2::ZERO).1;

@@ -93,7 +93,8 @@ impl<'a> Reference<'a> {
     fn new(problem: &'a Problem, solution: Solution) -> Reference<'a> {
         let field = VertexField::as_computed(problem, &solution);
         let is_steep = |e: u32| {
-            let [a, b, c] = field.vertices_of(problem, e).map(|v| field.irradiance(v).luminance_f64());
+            let [a, b, c] =
+                field.vertices_at(problem, problem.mesh.place(e)).map(|v| field.irradiance(v).luminance_f64());
             let (least, most) = (a.min(b).min(c), a.max(b).max(c));
             most - least > STEEP * most
         };

@@ -143,6 +143,10 @@ fn check(problem: &Problem, settings: &Settings) -> Result<(), Error> {
         let allowed = "deterministic methods know no point, spot or directional lights; use stochastic-jacobi";
         return Err(Error::Parameter { name: "scene", value, allowed });
     }
+    if problem.mesh.has_clusters() {
+        let allowed = "deterministic methods take flat elements; cut the scene without clusters";
+        return Err(Error::Parameter { name: "elements", value: "clusters of triangles".to_owned(), allowed });
+    }
     for (name, value) in [("unshot", settings.unshot), ("link-power", settings.link_power)] {
         if !(value > 0.0 && value < 1.0) {
             let allowed = "a share of the emitted power, above 0 and below 1";

@@ -36,7 +36,7 @@ impl Node {
     pub fn irradiance(&self, receiver: &Receiver) -> f32 {
         let way = self.center - receiver.center;
         let height = way.dot(receiver.normal);
-        if receiver.flat && height + self.radius <= receiver.tolerance {
+        if receiver.is_above(self.center, self.radius) {
             return 0.0;
         }
         let distance = way.length().max(f32::MIN_POSITIVE);
@@ -45,7 +45,7 @@ impl Node {
         let rest = 0.25 * (self.flux - self.axis.length());
         let sent = (towards.max(0.0) + rest.max(0.0)).max(FLOOR * self.flux);
         let size = self.radius + receiver.radius;
-        sent * cos.max(FLOOR) / (PI * (distance * distance).max(size * size))
+        sent * cos.max(receiver.floor()) / (PI * (distance * distance).max(size * size))
     }
 }
 

@@ -78,7 +78,7 @@ fn edges_between_different_divisions_share_all_vertices() {
 #[test]
 fn edges_of_split_patches_share_all_vertices() {
     let split = vec![0, 0, 1, 0, 2, 1, 4, 1, 1, 2, 4, 1, 1, 0, 0, 1, 1, 1, 2, 1, 1, 8];
-    let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: split };
+    let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: split, leaders: Vec::new() };
     let (all, _) = faces(&square_cut(&cut, [20.0, 0.0]));
     let key = |p: Vec3| ((p.x * 1e5).round() as i32, (p.y * 1e5).round() as i32);
     let mut edges = std::collections::BTreeMap::new();

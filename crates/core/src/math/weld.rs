@@ -9,6 +9,9 @@ use std::collections::HashMap;
 /// Cells are this much wider than the tolerance, so that most points need to look into one cell only.
 const CELL: f32 = 32.0;
 
+/// Points of a scene that are closer than this share of its radius are one: some ten times the rounding of a coordinate.
+pub const TOLERANCE: f32 = 4e-6;
+
 /// Points met so far, in a grid of cells; each cell is a chain of points.
 pub struct Weld {
     tolerance: f32,
