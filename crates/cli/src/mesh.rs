@@ -28,7 +28,8 @@ enum Mesh {
 pub struct MeshArguments {
     /// Where elements are small: adaptive, where the light changes (at the edges of shadows, beside lamps), or uniform, the same everywhere.
     /// A quick solution, a tenth of the work or less, finds that out; the same scene, --elements and --light make the same mesh, whatever the seed
-    /// and the method (but for few --rays, or little --time) [default: adaptive; uniform with --max-edge]
+    /// and the method (but for few --rays, or little --time) [default: adaptive; uniform with --max-edge, and where there are more triangles than
+    /// half the elements, which are then put together]
     #[arg(long, value_enum, hide_possible_values = true)]
     mesh: Option<Mesh>,
 }
@@ -74,7 +75,9 @@ impl MeshArguments {
                 return Err(Failure::usage(what).with_help("ask for --elements N, or leave out --mesh adaptive"));
             }
             (_, Some(Mesh::Uniform)) => None,
-            (elements, _) => elements.filter(|&elements| elements > Resolution::least(&scene)),
+            (elements, Some(Mesh::Adaptive)) => elements.filter(|&elements| elements > Resolution::least(&scene)),
+            // Where most triangles are smaller than elements should be, there is more to gain by putting them together.
+            (elements, None) => elements.filter(|&elements| elements >= 2 * Resolution::least(&scene)),
         };
         let Some(elements) = adaptive else {
             return Ok(Meshed { problem: Problem::new(scene, resolution)?, budget, took: Duration::ZERO });

@@ -218,7 +218,7 @@ impl Solve {
 
     fn resolution(&self, chosen: &Chosen) -> Resolution {
         match (self.elements, self.max_edge) {
-            (Some(elements), _) if self.method.deterministic().is_some() => Resolution::Elements(elements),
+            (Some(elements), _) if chosen.is_deterministic() => Resolution::Elements(elements),
             (Some(elements), _) => Resolution::Clustered(elements),
             (None, Some(edge)) => Resolution::MaxEdge(edge),
             (None, None) if chosen.is_deterministic() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
