@@ -64,9 +64,7 @@ fn the_same_seed_gives_the_same_bytes_for_any_number_of_threads() {
 #[test]
 fn indirect_light_is_part_of_all_light_and_says_so() {
     let folder = Folder::new();
-    // The same elements for both: an adaptive mesh follows the light that is asked for.
-    let solve =
-        |arguments: &[&str]| folder.json(&with(&with(&["solve", "--json", "--mesh", "uniform"], arguments), &SMALL));
+    let solve = |arguments: &[&str]| folder.json(&with(&with(&["solve", "--json"], arguments), &SMALL));
     let [all, indirect] = ["all", "indirect"].map(|light| solve(&["--light", light]));
     let mean = |summary: &serde_json::Value| summary["objects"][0]["mean"].as_f64().unwrap();
     assert!(0.0 < mean(&indirect) && mean(&indirect) < mean(&all), "{indirect}");
@@ -130,15 +128,16 @@ fn the_mesh_follows_the_light_and_not_the_seed_or_the_method() {
         let all = ["solve", "cornell-box", "--elements", "3000", "--rays", "300k", "--json", "-o", name];
         folder.json(&with(&all, arguments))
     };
-    let adaptive = solve("a.isolux", &[]);
-    let uniform = solve("u.isolux", &["--mesh", "uniform"]);
+    let follow = ["--mesh", "adaptive"];
+    let adaptive = solve("a.isolux", &follow);
+    let uniform = solve("u.isolux", &[]);
     let elements = |summary: &serde_json::Value| summary["elements"].as_u64().unwrap();
     assert!((2700..=3000).contains(&elements(&adaptive)) && elements(&uniform) <= 3000, "{adaptive}");
     assert!(folder.fails(2, &["compare", "a.isolux", "u.isolux"]).contains("different elements"));
     // A tenth of the rays finds the mesh.
     assert!(adaptive["rays"].as_u64() < uniform["rays"].as_u64());
-    solve("b.isolux", &["--seed", "2"]);
-    solve("c.isolux", &["--method", "stochastic-jacobi"]);
+    solve("b.isolux", &with(&follow, &["--seed", "2"]));
+    solve("c.isolux", &with(&follow, &["--method", "stochastic-jacobi"]));
     folder.prints(&["merge", "a.isolux", "b.isolux", "-o", "m.isolux"]);
     folder.prints(&["compare", "a.isolux", "c.isolux"]);
 }

@@ -154,13 +154,14 @@ fn is_open_between(a: &Member, b: &Member) -> bool {
 #[cfg(test)]
 mod tests {
     use crate::Problem;
+    use crate::geometry::{Hit, Ray};
     use crate::math::Rgb;
     use crate::mesh::Resolution;
     use crate::scene::builtin::shapes::Builder;
     use crate::scene::{Material, Scene, cut_at_contacts};
     use crate::view::VertexField;
     use crate::view::tests::solution;
-    use glam::Vec3;
+    use glam::{Vec2, Vec3};
 
     /// A square floor, and a wall on it over the line x = 0.4 from y = 0 `to` y.
     fn scene(to: f32) -> Scene {
@@ -221,6 +222,32 @@ mod tests {
         assert_eq!(mixed.collect::<Vec<_>>(), Vec::<&(Vec3, f32)>::new());
         let seen = |p: &Vec3| p.x < 0.3 || p.x > 0.73 || p.y < 0.32 || p.y > 0.7;
         assert!(all.iter().all(|(p, light)| *light == 1.0 || !seen(p)));
+    }
+
+    #[test]
+    fn nothing_dark_shows_beside_the_boxes_of_a_room() {
+        let scene = cut_at_contacts(crate::scene::builtin::builtin("cornell-box").unwrap(), 0.004);
+        let problem = Problem::new(scene, Resolution::Elements(20_000)).unwrap();
+        let looks_up = |e: u32| {
+            let middle = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
+            let (from, normal) = problem.geometry.surface(problem.mesh.triangle(e), middle);
+            let ray = Ray { origin: from + 1e-4 * normal, direction: normal, from: problem.mesh.triangle(e) };
+            let mut hit = [Hit::MISS];
+            problem.geometry.closest(&[ray], &mut hit);
+            hit[0].is_miss() || !hit[0].back
+        };
+        let light = |e: u32| Rgb::grey(if looks_up(e) { 1.0 } else { 0.0 });
+        let light: Vec<Rgb> = problem.mesh.elements().map(light).collect();
+        let field = VertexField::new(&problem, &solution(light.clone()));
+        let is_lit = |&e: &u32| light[e as usize].g > 0.5 && problem.object(e) == 0;
+        for e in problem.mesh.elements().filter(is_lit) {
+            let vertices = field.vertices_at(&problem, problem.mesh.place(e));
+            assert!(
+                vertices.iter().all(|&v| field.irradiance(v).g == 1.0),
+                "{:?}",
+                vertices.map(|v| field.position(v))
+            );
+        }
     }
 
     #[test]

@@ -151,7 +151,8 @@ fn visit_crossings(
         buckets.near_segment(a, b, tolerance, |end| {
             let p = position(end.key);
             let t = (p - a).dot(b - a) / (piece.length * piece.length);
-            let between = end.key != piece.from && end.key != piece.to && t > 0.0 && t < 1.0;
+            // Vertices of both sides of a wall lie at the same place.
+            let between = p != a && p != b && t > 0.0 && t < 1.0;
             if between && p.distance(a + t * (b - a)) <= tolerance {
                 visit(piece, end, t);
             }

@@ -46,7 +46,7 @@ pub fn pieces(plane: &Plane, segments: &[[DVec2; 2]], tolerance: f64, detail: f6
     }
     let limits = RefinementParameters::new()
         .with_angle_limit(AngleLimit::from_deg(LEAST_ANGLE))
-        .with_min_required_area(0.125 * detail * detail)
+        .with_min_required_area(0.5 * detail * detail)
         .with_max_additional_vertices(MOST_ADDED * mesh.num_vertices());
     mesh.refine(limits);
     let points: Vec<DVec2> = mesh.vertices().map(|v| DVec2::new(v.position().x, v.position().y)).collect();
