@@ -27,7 +27,7 @@ use std::time::{Duration, Instant};
 const DETERMINISTIC_ELEMENTS: u64 = 2000;
 
 /// Contacts that are shorter than this share of an element's edge are ignored.
-const DETAIL: f32 = 0.5;
+const DETAIL: f32 = 1.0;
 
 const EXAMPLES: &str = "\
 Examples:
