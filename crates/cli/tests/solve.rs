@@ -162,3 +162,14 @@ fn a_solve_ends_when_it_is_as_accurate_as_was_asked_for() {
     assert!(limited["rays"].as_u64().unwrap() < 60_000 && limited["accuracy"]["met"] == false, "{limited}");
     assert!(limited["warnings"].to_string().contains("not 0.0100 % as was asked for"), "{limited}");
 }
+
+#[test]
+fn surfaces_are_cut_where_others_stand_on_them_if_that_is_asked_for() {
+    let folder = Folder::new();
+    let triangles = |arguments: &[&str]| {
+        let all = ["solve", "cornell-box", "--elements", "2000", "--rays", "30k", "--json"];
+        folder.json(&with(&all, arguments))["triangles"].as_u64().unwrap()
+    };
+    assert_eq!(triangles(&[]), 38);
+    assert!(triangles(&["--contacts", "cut"]) > 50);
+}
