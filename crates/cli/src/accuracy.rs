@@ -1,9 +1,9 @@
 //! `--error`: how accurate a solution shall be, as people say it.
 
 use crate::failure::Failure;
-use crate::numbers::{parse_share, percent};
+use crate::numbers::{decimals_for, parse_share, percent};
 use isolux_core::scene::Scene;
-use isolux_core::{Accuracy, Error, Problem, Quantity, Solution};
+use isolux_core::{Accuracy, Certainty, Error, Problem, Quantity, Solution};
 
 /// What a bound holds with unless said otherwise, and everywhere where nobody asks.
 pub const CONFIDENCE: f64 = 0.95;
@@ -112,6 +112,13 @@ impl Reached {
             (in_words(self.accuracy.of, &problem.scene), with_confidence(self.accuracy.confidence));
         format!("Error at most {} {confidence} ({what}, {} replicates)\n", percent(self.bound), self.replicates)
     }
+}
+
+/// A line: the scene's mean irradiance with its error bar.
+pub fn mean_in_words(certainty: &Certainty) -> String {
+    let margin = certainty.scene.margin(CONFIDENCE);
+    let decimals = decimals_for(margin, 2);
+    format!("Mean irradiance {:.decimals$} ± {margin:.decimals$} lx (95 %)\n", certainty.scene.mean)
 }
 
 /// `RMS over all elements`, `mean irradiance of 'Floor'`.

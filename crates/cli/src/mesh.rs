@@ -74,8 +74,15 @@ impl MeshArguments {
                 let what = "--max-edge makes equal elements, and those of an adaptive mesh are not";
                 return Err(Failure::usage(what).with_help("ask for --elements N, or leave out --mesh adaptive"));
             }
-            // Where there are more triangles than elements there is nothing to place.
-            (Mesh::Adaptive, Some(elements)) => Some(elements).filter(|&elements| elements > Resolution::least(&scene)),
+            (Mesh::Adaptive, Some(elements)) => {
+                let least = Resolution::least(&scene);
+                if elements <= least {
+                    let what =
+                        format!("--mesh adaptive has nothing to place: the scene has {least} sides of triangles");
+                    return Err(Failure::usage(what).with_help("ask for more --elements, or leave out --mesh adaptive"));
+                }
+                Some(elements)
+            }
         };
         let Some(elements) = adaptive else {
             return Ok(Meshed { problem: Problem::new(scene, resolution)?, budget, took: Duration::ZERO });

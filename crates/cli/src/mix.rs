@@ -1,8 +1,8 @@
 //! `isolux mix`: the lamps of a solution dimmed and coloured, without solving again.
 
-use crate::accuracy::{CONFIDENCE, Reached};
+use crate::accuracy::{Reached, mean_in_words};
 use crate::failure::Failure;
-use crate::numbers::{count, decimals_for};
+use crate::numbers::count;
 use crate::writing::{Made, WritingArguments};
 use crate::{input, light_groups, report, terminal};
 use isolux_core::math::Rgb;
@@ -132,11 +132,7 @@ fn in_words(problem: &Problem, solution: &Solution) -> String {
         solution.groups.len(),
         Reached::by(problem, solution, None).in_words(problem)
     );
-    if let Some(certainty) = &solution.certainty {
-        let margin = certainty.scene.margin(CONFIDENCE);
-        let decimals = decimals_for(margin, 2);
-        text += &format!("Mean irradiance {:.decimals$} ± {margin:.decimals$} lx (95 %)\n", certainty.scene.mean);
-    }
+    text += &solution.certainty.as_ref().map_or(String::new(), mean_in_words);
     text + &light_groups::table(problem, solution) + &report::balance(&solution.balance)
 }
 

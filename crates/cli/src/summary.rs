@@ -1,6 +1,6 @@
 //! What a solve came to: for people in words and tables, for programs as one JSON object.
 
-use crate::accuracy::{self, CONFIDENCE, Reached};
+use crate::accuracy::{self, CONFIDENCE, Reached, mean_in_words};
 use crate::light_groups;
 use crate::numbers::{count, decimals_for, percent, time};
 use crate::output::{self, Written};
@@ -164,9 +164,7 @@ impl Summary<'_> {
             return String::new();
         }
         let mut text = reached.in_words(self.problem);
-        let margin = certainty.scene.margin(CONFIDENCE);
-        let decimals = decimals_for(margin, 2);
-        text += &format!("Mean irradiance {:.decimals$} ± {margin:.decimals$} lx (95 %)\n", certainty.scene.mean);
+        text += &mean_in_words(certainty);
         let next = if reached.is_enough() { 0.5 * reached.bound } else { reached.accuracy.error };
         let more = (reached.bound / next).powi(2) - 1.0;
         let (rays, seconds) = (round(more * self.solution.work.rays as f64), time(more * self.seconds));

@@ -138,6 +138,12 @@ impl Plane {
         [self.corners[k], self.corners[(k + 1) % 3]]
     }
 
+    /// How far `point` lies off the line of edge `k`, positive inside of the triangle.
+    fn off_edge(&self, k: usize, point: DVec2) -> f64 {
+        let [a, b] = self.edge(k);
+        (b - a).normalize_or_zero().perp_dot(point - a)
+    }
+
     fn longest_edge(&self) -> f64 {
         (0..3).map(|k| self.edge(k)).map(|[a, b]| a.distance(b)).fold(0.0, f64::max)
     }

@@ -53,10 +53,7 @@ pub fn pieces(plane: &Plane, segments: &[[DVec2; 2]], tolerance: f64, detail: f6
     let triangles = mesh.inner_faces().map(|face| face.vertices().map(|v| v.index()));
     // Where borders bend by a rounding there are splinters beyond them.
     let triangles: Vec<[usize; 3]> = triangles.filter(|piece| !is_flat(piece.map(|k| points[k]), tolerance)).collect();
-    let on_border = |k: usize, p: DVec2| {
-        let [a, b] = plane.edge(k);
-        (p - a).dot((b - a).normalize_or_zero().perp()).abs() <= 2.0 * tolerance
-    };
+    let on_border = |k: usize, p: DVec2| plane.off_edge(k, p).abs() <= 2.0 * tolerance;
     let is_inside = |[a, b]: &[usize; 2]| !(0..3).any(|k| on_border(k, points[*a]) && on_border(k, points[*b]));
     let edges = mesh.undirected_edges().filter(|edge| edge.is_constraint_edge());
     let contacts = edges.map(|edge| edge.vertices().map(|v| v.index())).filter(is_inside).collect();
@@ -94,8 +91,7 @@ impl Points<'_> {
 fn along_edge(plane: &Plane, points: &[DVec2], k: usize, tolerance: f64) -> Vec<usize> {
     let [a, b] = plane.edge(k);
     let along = (b - a).normalize_or_zero();
-    let mut on: Vec<usize> =
-        (0..points.len()).filter(|&n| (points[n] - a).dot(along.perp()).abs() <= tolerance).collect();
+    let mut on: Vec<usize> = (0..points.len()).filter(|&n| plane.off_edge(k, points[n]).abs() <= tolerance).collect();
     on.sort_by(|&m, &n| (points[m] - a).dot(along).total_cmp(&(points[n] - a).dot(along)));
     on
 }

@@ -66,9 +66,8 @@ fn meeting(heights: [f64; 3], flat: [DVec2; 3], tolerance: f64) -> Option<[DVec2
 /// The part of a segment that lies on the triangle of `plane`, or hardly beyond its borders: many lie along them.
 fn clipped(plane: &Plane, [p, q]: [DVec2; 2], tolerance: f64) -> Option<[DVec2; 2]> {
     let (mut from, mut to) = (0.0f64, 1.0f64);
-    for [a, b] in (0..3).map(|k| plane.edge(k)) {
-        let inside = |point: DVec2| (b - a).normalize_or_zero().perp_dot(point - a);
-        let (start, end) = (inside(p), inside(q));
+    for k in 0..3 {
+        let (start, end) = (plane.off_edge(k, p), plane.off_edge(k, q));
         match (start < -tolerance, end < -tolerance) {
             _ if start.max(end) < -tolerance => return None,
             (true, _) => from = from.max(start / (start - end)),
@@ -81,11 +80,7 @@ fn clipped(plane: &Plane, [p, q]: [DVec2; 2], tolerance: f64) -> Option<[DVec2; 
 
 /// The edge of the triangle of `plane` along which a segment lies, if it does.
 fn edge_along(plane: &Plane, segment: [DVec2; 2], tolerance: f64) -> Option<usize> {
-    (0..3).find(|&k| {
-        let [a, b] = plane.edge(k);
-        let across = (b - a).normalize_or_zero().perp();
-        segment.iter().all(|point| (*point - a).dot(across).abs() <= tolerance)
-    })
+    (0..3).find(|&k| segment.iter().all(|&point| plane.off_edge(k, point).abs() <= tolerance))
 }
 
 /// The segments of groups that hang together and reach over `detail`.
