@@ -35,6 +35,8 @@ pub struct Picture {
     pub height: u32,
     /// Luminance [cd/m²] of every pixel, linear; black where there is no surface.
     pub luminance: Vec<Rgb>,
+    /// Its standard error [cd/m²], that of [`VertexField::std_error_at`]; `None` if it is not known.
+    pub std_error: Option<Vec<Rgb>>,
     /// Linear display colour in [0, 1] of every pixel. Tone-mapped ray by ray and then averaged, so the edge of a lamp a
     /// thousand times brighter than white is as smooth as any other.
     pub display: Vec<Rgb>,
@@ -75,8 +77,15 @@ pub fn render(problem: &Problem, solution: &Solution, options: &ViewOptions) -> 
 pub fn render_field(problem: &Problem, field: &VertexField, options: &ViewOptions) -> Result<Picture, Error> {
     let view = View::new(problem, field, options)?;
     let exposure = options.exposure.unwrap_or_else(|| view.meter());
-    let (luminance, display) = view.pixels(options.samples, exposure).into_iter().unzip();
-    Ok(Picture { width: view.width, height: view.height, luminance, display, exposure })
+    let pixels = view.pixels(options.samples, exposure);
+    Ok(Picture {
+        width: view.width,
+        height: view.height,
+        luminance: pixels.iter().map(|pixel| pixel.luminance).collect(),
+        std_error: field.is_error_known().then(|| pixels.iter().map(|pixel| pixel.std_error).collect()),
+        display: pixels.iter().map(|pixel| pixel.display).collect(),
+        exposure,
+    })
 }
 
 /// The exposure that [`render`] would choose for the camera in `options`: for whatever else shall look like the picture.
@@ -90,6 +99,14 @@ pub fn exposure(problem: &Problem, field: &VertexField, options: &ViewOptions) -
 
 fn check(name: &'static str, value: u32, fine: bool, allowed: &'static str) -> Result<(), Error> {
     if fine { Ok(()) } else { Err(Error::Parameter { name, value: value.to_string(), allowed }) }
+}
+
+/// What [`Picture`] has of each pixel.
+#[derive(Clone, Copy, Default)]
+struct Pixel {
+    luminance: Rgb,
+    std_error: Rgb,
+    display: Rgb,
 }
 
 struct View<'a> {
@@ -118,9 +135,8 @@ impl<'a> View<'a> {
         Ok(View { problem, field, rays: CameraRays::new(&camera, width, height), width, height })
     }
 
-    /// Luminance and display colour of every pixel.
-    fn pixels(&self, samples: u32, exposure: Exposure) -> Vec<(Rgb, Rgb)> {
-        let mut pixels = vec![(Rgb::BLACK, Rgb::BLACK); (self.width * self.height) as usize];
+    fn pixels(&self, samples: u32, exposure: Exposure) -> Vec<Pixel> {
+        let mut pixels = vec![Pixel::default(); (self.width * self.height) as usize];
         pixels.par_chunks_mut(RUN).enumerate().for_each(|(chunk, run)| {
             let first = (chunk * RUN) as u32;
             let one = |p: u32| (0..samples).map(move |k| self.rays.ray_in_pixel(p, self.width, k, samples));
@@ -129,8 +145,13 @@ impl<'a> View<'a> {
             for (pixel, seen) in run.iter_mut().zip(seen.chunks(samples as usize)) {
                 let luminances = seen.iter().map(|s| s.unwrap_or_default().luminance());
                 let displays = luminances.clone().map(|l| exposure.display(l));
-                pixel.0 = luminances.sum::<Rgb>() / samples as f32;
-                pixel.1 = displays.sum::<Rgb>() / samples as f32;
+                let errors = seen.iter().map(|s| s.unwrap_or_default().std_error);
+                let mean = |sum: Rgb| sum / samples as f32;
+                *pixel = Pixel {
+                    luminance: mean(luminances.sum()),
+                    std_error: mean(errors.sum()),
+                    display: mean(displays.sum()),
+                };
             }
         });
         pixels
@@ -232,6 +253,18 @@ mod tests {
         let expected = std::f32::consts::FRAC_1_PI;
         assert!(picture.luminance.iter().all(|l| (l.g - expected).abs() < 1e-6 && l.r == l.g));
         assert!(picture.display.iter().all(|d| (d.g - picture.display[0].g).abs() < 1e-6));
+    }
+
+    #[test]
+    fn every_pixel_knows_how_sure_it_is() {
+        let problem = Problem::new(room(), Resolution::Elements(200)).unwrap();
+        let light = vec![Rgb::WHITE; problem.mesh.len()];
+        let unknown = solution(light.clone());
+        assert!(render(&problem, &unknown, &small()).unwrap().std_error.is_none());
+        let known = Solution { std_error: vec![Rgb::new(0.1, 0.2, 0.3); light.len()], ..unknown };
+        let errors = render(&problem, &known, &small()).unwrap().std_error.unwrap();
+        let expected = Rgb::new(0.1, 0.2, 0.3) * 0.5 * std::f32::consts::FRAC_1_PI;
+        assert!(errors.len() == 40 * 23 && errors.iter().all(|e| (*e - expected).luminance().abs() < 1e-6));
     }
 
     #[test]

@@ -46,12 +46,9 @@ pub fn smooth(problem: &Problem, solution: &Solution) -> Solution {
 /// Irradiance [lux] of the open part of every element, `open[e]` of its area, with the noise taken out.
 pub(super) fn of_open_parts(problem: &Problem, solution: &Solution, vertices: &Vertices, open: &[f32]) -> Vec<Rgb> {
     let value = as_computed(solution, open);
-    if !is_noise_known(solution) {
-        return value;
-    }
+    let Some(std_error) = errors_of_open_parts(solution, open) else { return value };
     let weight: Vec<f32> = (0..).zip(open).map(|(e, open)| problem.mesh.area(e) * open).collect();
     let neighbours = Neighbours::new(problem, vertices, &weight);
-    let std_error: Vec<Rgb> = solution.std_error.iter().zip(open).map(|(s, open)| *s / divisor(*open)).collect();
     let mut estimate = Estimate { value, variance: pooled(&neighbours, &std_error, &weight) };
     for _ in 0..PASSES {
         estimate = pass(&neighbours, &estimate);
@@ -62,6 +59,12 @@ pub(super) fn of_open_parts(problem: &Problem, solution: &Solution, vertices: &V
 /// Irradiance [lux] of the open part of every element, noise and all.
 pub(super) fn as_computed(solution: &Solution, open: &[f32]) -> Vec<Rgb> {
     solution.irradiance.iter().zip(open).map(|(value, open)| *value / divisor(*open)).collect()
+}
+
+/// Standard errors [lux] of [`as_computed`]; `None` if the noise is not known.
+pub(super) fn errors_of_open_parts(solution: &Solution, open: &[f32]) -> Option<Vec<Rgb>> {
+    let errors = || solution.std_error.iter().zip(open).map(|(s, open)| *s / divisor(*open)).collect();
+    is_noise_known(solution).then(errors)
 }
 
 /// Light on an element all of which is covered stays as it is.

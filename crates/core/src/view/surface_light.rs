@@ -11,6 +11,8 @@ use std::f32::consts::FRAC_1_PI;
 pub struct Seen {
     pub emitted: Rgb,
     pub reflected: Rgb,
+    /// Of what is reflected; zero if it is not known.
+    pub std_error: Rgb,
 }
 
 impl Seen {
@@ -23,5 +25,10 @@ impl Seen {
 pub fn seen(problem: &Problem, field: &VertexField, triangle: u32, uv: Vec2, back: bool) -> Seen {
     let (reflectivity, emission) = problem.scene.colors_at(triangle, uv);
     let irradiance = field.irradiance_at(problem, triangle, uv, back);
-    Seen { emitted: emission * FRAC_1_PI, reflected: reflectivity * irradiance * FRAC_1_PI }
+    let std_error = match field.is_error_known() {
+        true => field.std_error_at(problem, triangle, uv, back),
+        false => Rgb::BLACK,
+    };
+    let shown = |irradiance: Rgb| reflectivity * irradiance * FRAC_1_PI;
+    Seen { emitted: emission * FRAC_1_PI, reflected: shown(irradiance), std_error: shown(std_error) }
 }

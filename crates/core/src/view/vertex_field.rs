@@ -18,11 +18,17 @@ use crate::{Problem, Solution};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Irradiance [lux] interpolated over the surface. Memory grows with the number of element corners, 40 to 60 bytes each.
+/// Irradiance [lux] interpolated over the surface, and how sure it is. Memory grows with the number of element corners, 50 to 70 bytes
+/// each.
+///
+/// The standard error at a vertex is the mean of those of the elements that touch it, with the same weights: what it is if neighbours
+/// err together, and at most that. What smoothing takes away is not taken off.
 #[derive(Clone, Debug)]
 pub struct VertexField {
     vertices: Vertices,
     irradiance: Vec<Rgb>,
+    /// Empty if nobody knows how sure the light is.
+    std_error: Vec<Rgb>,
 }
 
 impl VertexField {
@@ -31,18 +37,28 @@ impl VertexField {
         let vertices = Vertices::new(problem);
         let open = cover::open_shares(problem, solution, &vertices);
         let values = smooth::of_open_parts(problem, solution, &vertices, &open);
-        VertexField::without_seams(problem, vertices, &values, &open)
+        VertexField::without_seams(problem, vertices, solution, &values, &open)
     }
 
     /// With all the noise of `solution`.
     pub fn as_computed(problem: &Problem, solution: &Solution) -> VertexField {
         let vertices = Vertices::new(problem);
         let open = cover::open_shares(problem, solution, &vertices);
-        VertexField::without_seams(problem, vertices, &smooth::as_computed(solution, &open), &open)
+        VertexField::without_seams(problem, vertices, solution, &smooth::as_computed(solution, &open), &open)
     }
 
-    fn without_seams(problem: &Problem, vertices: Vertices, values: &[Rgb], open: &[f32]) -> VertexField {
+    /// Of `values` [lux], those of the open parts of the elements of `solution`.
+    fn without_seams(
+        problem: &Problem,
+        vertices: Vertices,
+        solution: &Solution,
+        values: &[Rgb],
+        open: &[f32],
+    ) -> VertexField {
         let mut field = VertexField::of_values(problem, vertices, values, open);
+        if let Some(errors) = smooth::errors_of_open_parts(solution, open) {
+            field.std_error = means(problem, &field.vertices, &errors, open);
+        }
         for seam in seams::t_vertices(problem, &field.vertices) {
             let (from, to) = (field.irradiance(seam.from), field.irradiance(seam.to));
             field.irradiance[seam.vertex as usize] = from + (to - from) * seam.t;
@@ -59,16 +75,32 @@ impl VertexField {
 
     /// Means at the vertices of `values` [lux] of the elements, of whose areas the shares `open` count.
     fn of_values(problem: &Problem, vertices: Vertices, values: &[Rgb], open: &[f32]) -> VertexField {
-        let weight = |e: u32| problem.mesh.area(e) * open[e as usize];
-        let mean = |v: u32| vertex_mean(vertices.touching(v), values, weight);
-        let mut irradiance: Vec<Rgb> = (0..vertices.len() as u32).into_par_iter().map(mean).collect();
+        let mut irradiance = means(problem, &vertices, values, open);
         pycnophylactic::interpolate(problem, &vertices, values, &mut irradiance);
-        VertexField { vertices, irradiance }
+        VertexField { vertices, irradiance, std_error: Vec::new() }
     }
 
     /// Irradiance [lux] at barycentric coordinates `uv` of `triangle`, on its front or its back; black for the back of a
     /// one-sided surface, which has none.
     pub fn irradiance_at(&self, problem: &Problem, triangle: u32, uv: Vec2, back: bool) -> Rgb {
+        self.interpolated(&self.irradiance, problem, triangle, uv, back)
+    }
+
+    /// Standard error [lux] there; NaN if it is not known.
+    pub fn std_error_at(&self, problem: &Problem, triangle: u32, uv: Vec2, back: bool) -> Rgb {
+        if !self.is_error_known() {
+            return Rgb::grey(f32::NAN);
+        }
+        self.interpolated(&self.std_error, problem, triangle, uv, back)
+    }
+
+    /// Whether somebody knows how sure the light is: not of drafts, and not after deterministic methods.
+    pub fn is_error_known(&self) -> bool {
+        !self.std_error.is_empty()
+    }
+
+    /// `values` of the vertices, linear between them.
+    fn interpolated(&self, values: &[Rgb], problem: &Problem, triangle: u32, uv: Vec2, back: bool) -> Rgb {
         if back && !problem.mesh.is_two_sided(triangle) {
             return Rgb::BLACK;
         }
@@ -78,7 +110,7 @@ impl VertexField {
         let side = Side { patch, back };
         let value = |ij| {
             let number = self.vertices.grid.number(&problem.mesh, side, ij);
-            self.irradiance[self.vertices.of_grid_point(number) as usize]
+            values[self.vertices.of_grid_point(number) as usize]
         };
         let [a, b, c] = cells::grid_corners(cell, m).map(value);
         let s = within.x.clamp(0.0, 1.0);
@@ -105,6 +137,11 @@ impl VertexField {
         self.irradiance[v as usize]
     }
 
+    /// Standard error [lux] at vertex `v`; NaN if it is not known.
+    pub fn std_error(&self, v: u32) -> Rgb {
+        self.std_error.get(v as usize).copied().unwrap_or(Rgb::grey(f32::NAN))
+    }
+
     /// Where elements' edges have vertices of their neighbours on them; for programs that draw triangles.
     pub fn edge_points(&self, problem: &Problem) -> EdgePoints {
         EdgePoints::new(problem, &self.vertices)
@@ -124,6 +161,12 @@ impl VertexField {
     pub fn position(&self, v: u32) -> Vec3 {
         self.vertices.position(v)
     }
+}
+
+/// Means at `vertices` of `values` of the elements, of whose areas the shares `open` count.
+fn means(problem: &Problem, vertices: &Vertices, values: &[Rgb], open: &[f32]) -> Vec<Rgb> {
+    let weight = |e: u32| problem.mesh.area(e) * open[e as usize];
+    (0..vertices.len() as u32).into_par_iter().map(|v| vertex_mean(vertices.touching(v), values, weight)).collect()
 }
 
 /// Weighted mean of the values of `elements`; the plain mean if none has a weight. Summed as deviations from the first, so

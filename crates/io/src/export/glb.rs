@@ -4,7 +4,7 @@
 //! the material has a texture it stays at full resolution and `COLOR_0` is what the texture must be multiplied by to look
 //! like the picture. Both sides of a two-sided surface are there as faces of their own, each with its own light, but for the dark insides
 //! of things. The
-//! numbers themselves are in the attribute `_IRRADIANCE` [lux], linear Rec. 709; `asset.extras` says so in the file.
+//! numbers themselves are in the attributes `_IRRADIANCE` and `_STD_ERROR` [lux], linear Rec. 709; `asset.extras` says so in the file.
 
 use super::glb_container::GlbBuilder;
 use super::image::encode_png;
@@ -69,6 +69,7 @@ fn asset(exposure: Exposure, smoothing: Smoothing) -> Value {
             "COLOR_0": "radiosity / pi [cd/m^2] times 2^exposure_stops, filmic tone curve (Hable 2010), linear; \
                         divided by the texture's mean where there is a texture",
             "_IRRADIANCE": "irradiance [lux], linear Rec. 709; illuminance = 0.2126 r + 0.7152 g + 0.0722 b",
+            "_STD_ERROR": "standard error of the irradiance [lux]: mean of those of the elements around, before smoothing",
         } },
     })
 }
@@ -127,6 +128,7 @@ struct Vertices {
     position: Vec<[f32; 3]>,
     color: Vec<[u16; 4]>,
     irradiance: Vec<[f32; 3]>,
+    std_error: Vec<[f32; 3]>,
     uv: Vec<[f32; 2]>,
     known: HashMap<(Bits<3>, Bits<3>, Bits<2>, [u16; 4]), u32>,
 }
@@ -154,6 +156,9 @@ impl Writer<'_> {
             "COLOR_0": self.glb.add_unorm16x4(&vertices.color),
             "_IRRADIANCE": self.glb.add_f32x3(&vertices.irradiance),
         });
+        if self.field.is_error_known() {
+            attributes["_STD_ERROR"] = json!(self.glb.add_f32x3(&vertices.std_error));
+        }
         if skin.is_some() {
             attributes["TEXCOORD_0"] = json!(self.glb.add_f32x2(&vertices.uv));
         }
@@ -223,9 +228,12 @@ impl Writer<'_> {
         let texture_uv = skin.map_or(Vec2::ZERO, |skin| {
             corners.iter().zip(of_triangle).map(|(c, w)| w * if skin.emits { c.emission_uv } else { c.uv }).sum()
         });
-        let irradiance: Rgb = shared.iter().zip(weights.to_array()).map(|(&v, w)| self.field.irradiance(v) * w).sum();
+        let mean = |light: &dyn Fn(u32) -> Rgb| shared.iter().zip(weights.to_array()).map(|(&v, w)| light(v) * w).sum();
+        let irradiance: Rgb = mean(&|v| self.field.irradiance(v));
+        let std_error: Rgb = mean(&|v| self.field.std_error(v));
         let color = self.color(material.reflectivity * tint * irradiance, material.emission, skin);
-        vertices.number(position.to_array(), irradiance.to_array(), texture_uv.to_array(), color)
+        let light = [irradiance, std_error].map(Rgb::to_array);
+        vertices.number(position.to_array(), light, texture_uv.to_array(), color)
     }
 
     /// `COLOR_0` for reflected and emitted light [lm/m²] before textures.
@@ -282,13 +290,15 @@ impl Writer<'_> {
 }
 
 impl Vertices {
-    /// Number of a vertex in the mesh: an earlier one, if all of it is the same.
-    fn number(&mut self, position: [f32; 3], irradiance: [f32; 3], uv: [f32; 2], color: [u16; 4]) -> u32 {
+    /// Number of a vertex in the mesh with its `light`, irradiance and standard error: an earlier one, if all but the error is the same.
+    fn number(&mut self, position: [f32; 3], light: [[f32; 3]; 2], uv: [f32; 2], color: [u16; 4]) -> u32 {
+        let [irradiance, std_error] = light;
         let key = (position.map(f32::to_bits), irradiance.map(f32::to_bits), uv.map(f32::to_bits), color);
         *self.known.entry(key).or_insert_with(|| {
             self.position.push(position);
             self.color.push(color);
             self.irradiance.push(irradiance);
+            self.std_error.push(std_error);
             self.uv.push(uv);
             self.position.len() as u32 - 1
         })

@@ -12,7 +12,8 @@ pub fn write_png(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Err
 
 pub fn write_exr(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> {
     let picture = view::render_field(lit.problem, lit.field(), &view_options(options))?;
-    encode_exr(picture.width, picture.height, &picture.luminance)
+    let std_error = picture.std_error.as_deref().map(|errors| ("std_error", errors));
+    encode_exr(picture.width, picture.height, &picture.luminance, std_error.as_slice())
 }
 
 /// What of the options concerns a picture.

@@ -49,6 +49,23 @@ fn both_sides_face_their_own_way_and_the_unlit_one_is_left_out() {
 }
 
 #[test]
+fn vertices_know_how_sure_their_light_is() {
+    let file = square(&[2, 3], [20.0, 10.0]);
+    let gltf = gltf::Gltf::from_slice(&file).unwrap();
+    let primitive = gltf.meshes().next().unwrap().primitives().next().unwrap();
+    let numbers = |name: &str| {
+        let (_, accessor) = primitive.attributes().find(|(s, _)| s.to_string() == name).unwrap();
+        let start = accessor.view().unwrap().offset() + accessor.offset();
+        let bytes = &gltf.blob.as_deref().unwrap()[start..start + accessor.count() * 12];
+        bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect::<Vec<f32>>()
+    };
+    // The errors of this solution are as large as its light.
+    let (light, errors) = (numbers("_IRRADIANCE"), numbers("_STD_ERROR"));
+    assert!(!light.is_empty() && light.len() == errors.len());
+    assert!(light.iter().zip(&errors).all(|(light, error)| (light - error).abs() < 1e-3), "{errors:?}");
+}
+
+#[test]
 fn texture_times_colour_is_the_picture() {
     let (_, colors) = faces(&square(&[1, 1], [20.0, 0.0]));
     let seen = 0.5 * Rgb::from_srgb8([100; 3]).g * 20.0 * FRAC_1_PI;
