@@ -13,16 +13,16 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// All that happens while a solver runs.
-pub struct Drive<'a> {
+pub struct Drive<'a, 'b> {
     pub start: Instant,
     /// Time that is left, if it is limited.
     pub left: Option<Duration>,
     pub drafts: Option<Drafts<'a>>,
-    pub checkpoints: Option<Checkpoints<'a>>,
+    pub checkpoints: Option<&'a mut Checkpoints<'b>>,
     pub interrupt: &'a Interrupt,
 }
 
-impl Drive<'_> {
+impl Drive<'_, '_> {
     /// Runs `solver` to its end, or until it is stopped; the best solution it has, and why it ended. The last checkpoint is written.
     pub fn run(self, solver: &mut dyn Solver, problem: &Problem, display: &mut Display) -> (Solution, Ended) {
         let Drive { start, left, mut drafts, mut checkpoints, interrupt } = self;
@@ -42,8 +42,8 @@ impl Drive<'_> {
             }),
             _ => solver.solution(problem),
         };
-        if let Some(mut checkpoints) = checkpoints {
-            tell(&watch, checkpoints.write(solver, problem));
+        if let Some(checkpoints) = checkpoints {
+            tell(&watch, checkpoints.write_last(solver, problem, ended == Ended::Interrupted));
         }
         if let Some(failure) = drafts.and_then(|drafts| drafts.failure) {
             watch.say(&format!("drafts ended early: {failure}"));

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::numbers::parse_time;
 use crate::output::Outputs;
+use crate::terminal;
 use isolux_io::checkpoint_file::{Checkpoint, Clock};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -30,7 +31,8 @@ const DECIDED: [&str; 12] = [
 #[derive(Clone, Debug, clap::Args)]
 pub struct ResumeArguments {
     /// Write the state of the solve to this file, every 2 seconds, or so rarely that it takes 2 % of the time, and at the end;
-    /// --resume goes on with it
+    /// --resume goes on with it. Without this option a solve of more than 5 seconds writes it beside its first output
+    /// (lit.png.checkpoint), and removes it when all outputs are there
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
 
@@ -38,38 +40,69 @@ pub struct ResumeArguments {
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     checkpoint_every: Option<Duration>,
 
+    /// Write no checkpoint
+    #[arg(long, conflicts_with_all = ["checkpoint", "checkpoint_every", "resume"])]
+    no_checkpoint: bool,
+
     /// Instead of SCENE: go on with the solve of a checkpoint, to the end that was asked for, with the same bits. --error E extends it
     /// until it is so accurate, --rays N to N rays in all, --time T by so much time. Checkpoints go on into the same file, unless --checkpoint names another
     #[arg(long, value_name = "FILE", conflicts_with_all = DECIDED)]
     pub resume: Option<PathBuf>,
 }
 
+/// The file of checkpoints.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Somebody asked for it; it stays.
+    Asked(PathBuf),
+    /// Beside the first output, and there only as long as it may be of use.
+    Beside(PathBuf),
+}
+
+impl Place {
+    pub fn path(&self) -> &Path {
+        let (Place::Asked(path) | Place::Beside(path)) = self;
+        path
+    }
+}
+
 impl ResumeArguments {
-    /// Where checkpoints are written, if anywhere.
+    /// Where checkpoints of a solve with `outputs` are written, if anywhere. What is there of an earlier run is not replaced but where
+    /// that was asked for.
     ///
     /// # Errors
     /// A failure if only the time between them is said.
-    pub fn file(&self) -> Result<Option<&Path>, Failure> {
-        let file = self.checkpoint.as_deref().or(self.resume.as_deref());
-        if file.is_none() && self.checkpoint_every.is_some() {
-            return Err(
-                Failure::usage("--checkpoint-every says when, but not where").with_help("add --checkpoint FILE")
-            );
+    pub fn place(&self, outputs: &[PathBuf]) -> Result<Option<Place>, Failure> {
+        if let Some(file) = self.checkpoint.as_ref().or(self.resume.as_ref()) {
+            return Ok(Some(Place::Asked(file.clone())));
         }
-        Ok(file)
+        if self.no_checkpoint {
+            return Ok(None);
+        }
+        let Some(first) = outputs.first() else {
+            return match self.checkpoint_every {
+                Some(_) => Err(Failure::usage("--checkpoint-every says when, but not where")
+                    .with_help("add --checkpoint FILE, or an output")),
+                None => Ok(None),
+            };
+        };
+        let mut beside = first.clone().into_os_string();
+        beside.push(".checkpoint");
+        let beside = PathBuf::from(beside);
+        if beside.exists() {
+            let name = beside.display();
+            terminal::note(&format!(
+                "{name} is there, of an earlier run, and is left alone: this one writes no checkpoint. 'isolux solve --resume \
+                 {name}' goes on with that run; or delete the file"
+            ));
+            return Ok(None);
+        }
+        Ok(Some(Place::Beside(beside)))
     }
 
-    /// Who writes them, if anybody does.
-    ///
-    /// # Errors
-    /// Those of [`ResumeArguments::file`].
-    pub fn checkpoints<'a>(
-        &self,
-        outputs: &'a Outputs,
-        start: Instant,
-        clock: Clock,
-    ) -> Result<Option<Checkpoints<'a>>, Failure> {
-        Ok(self.file()?.map(|_| Checkpoints::new(outputs, self.checkpoint_every, start, clock)))
+    /// Who writes them to `place`.
+    pub fn checkpoints<'a>(&self, place: Place, outputs: &'a Outputs, start: Instant, clock: Clock) -> Checkpoints<'a> {
+        Checkpoints::new(outputs, place, self.checkpoint_every, start, clock)
     }
 
     /// A file that is read and must not be written.

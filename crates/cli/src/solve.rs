@@ -2,6 +2,7 @@
 
 use crate::arguments::{PictureArguments, ThreadArguments, UnitArguments};
 use crate::budget::BudgetArguments;
+use crate::checkpoints::Checkpoints;
 use crate::drafts::Drafts;
 use crate::drive::Drive;
 use crate::failure::{Failure, INTERRUPTED};
@@ -10,7 +11,7 @@ use crate::mesh::{Limits, MeshArguments, Meshed};
 use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
 use crate::progress::{Display, ProgressArguments};
-use crate::resume::{ResumeArguments, resume, time_left};
+use crate::resume::{Place, ResumeArguments, resume, time_left};
 use crate::solver::{Chosen, SolverArguments};
 use crate::summary::Summary;
 use crate::{input, terminal};
@@ -58,8 +59,10 @@ The same scene, options and seed give the same files, bit for bit, for any numbe
 Ctrl-C ends the solve and keeps the best result so far: the files are written, and the exit code is 130. A second \
 Ctrl-C stops at once and leaves old files as they were. SIGTERM does the same.
 
-With --checkpoint FILE nothing is lost that was computed more than a few seconds before, whatever happens: \
-'isolux solve --resume FILE' goes on, and ends with the same bits as if nothing had happened (but not with --time).";
+Nothing is lost that was computed more than a few seconds before, whatever happens: 'isolux solve --resume \
+lit.png.checkpoint' goes on, and ends with the same bits as if nothing had happened (but not with --time). That file is \
+there while a solve runs, and stays if it is stopped or an output cannot be written; --checkpoint FILE keeps it in any case, \
+--no-checkpoint does without.";
 
 /// Compute the light on every surface of a scene
 ///
@@ -145,25 +148,44 @@ fn parse_objects(text: &str) -> Result<usize, String> {
     number.map_err(|_| "give a number or 'all'".to_owned())
 }
 
+/// What happens to the checkpoint that nobody asked for: it is removed, unless somebody may want to go on with it.
+fn keep_or_remove(checkpoint: &Path, all_is_written: bool, interrupt: &Interrupt) {
+    if all_is_written && !interrupt.is_asked() {
+        // One that cannot be removed does no harm.
+        let _ = isolux_io::files::remove(checkpoint);
+    } else {
+        let name = checkpoint.display();
+        terminal::note(&format!("the run is kept: 'isolux solve --resume {name}' goes on with it"));
+    }
+}
+
 impl Solve {
     pub fn run(self) -> Result<u8, Failure> {
         let pool = self.threads.pool()?;
         watch(move |interrupt, files| {
             let inputs: Vec<&Path> = self.scene.as_deref().into_iter().chain(self.resume.input()).collect();
-            let outputs = Outputs::open_with_checkpoint(files, &self.outputs, self.resume.file()?, &inputs)?;
-            pool.install(|| self.work(&outputs, interrupt))
+            let place = self.resume.place(&self.outputs)?;
+            let checkpoint = place.as_ref().map(Place::path);
+            let outputs = Outputs::open_with_checkpoint(files, &self.outputs, checkpoint, &inputs)?;
+            pool.install(|| self.work(&outputs, place, interrupt))
         })
     }
 
     /// Reads, solves, writes and reports.
-    fn work(&self, outputs: &Outputs, interrupt: &Interrupt) -> Result<u8, Failure> {
+    fn work(&self, outputs: &Outputs, place: Option<Place>, interrupt: &Interrupt) -> Result<u8, Failure> {
         let mut display = self.progress.display(self.quiet);
-        let result = self.work_watched(outputs, interrupt, &mut display);
+        let result = self.work_watched(outputs, place, interrupt, &mut display);
         display.clear();
         result
     }
 
-    fn work_watched(&self, outputs: &Outputs, interrupt: &Interrupt, display: &mut Display) -> Result<u8, Failure> {
+    fn work_watched(
+        &self,
+        outputs: &Outputs,
+        place: Option<Place>,
+        interrupt: &Interrupt,
+        display: &mut Display,
+    ) -> Result<u8, Failure> {
         let Checkpoint { problem, mut solver, clock } = match &self.resume.resume {
             Some(file) => self.resumed(file, display)?,
             None => self.begun(display)?,
@@ -171,11 +193,12 @@ impl Solve {
 
         interrupt.keep_result();
         let start = Instant::now();
+        let mut checkpoints = place.map(|place| self.resume.checkpoints(place, outputs, start, clock));
         let drive = Drive {
             start,
             left: time_left(clock),
             drafts: self.every.map(|every| Drafts::new(outputs, self.picture.options(), every, start)),
-            checkpoints: self.resume.checkpoints(outputs, start, clock)?,
+            checkpoints: checkpoints.as_mut(),
             interrupt,
         };
         let (solution, ended) = drive.run(solver.as_mut(), &problem, display);
@@ -183,8 +206,12 @@ impl Solve {
         let Progress { asked, bias, .. } = solver.progress();
         drop(solver);
 
-        let written = outputs.write(&problem, &solution, &self.picture.options(), display, interrupt)?;
+        let written = outputs.write(&problem, &solution, &self.picture.options(), display, interrupt);
         display.clear();
+        if let Some(checkpoint) = checkpoints.as_ref().and_then(Checkpoints::beside) {
+            keep_or_remove(checkpoint, written.is_ok(), interrupt);
+        }
+        let written = written?;
         let threads = rayon::current_num_threads();
         let summary =
             Summary { problem: &problem, solution: &solution, asked, bias, ended, seconds, threads, outputs: &written };

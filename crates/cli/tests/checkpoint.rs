@@ -95,6 +95,62 @@ fn a_full_disk_is_told_once_and_costs_nothing() {
     assert_eq!(folder.names(), ["a.checkpoint"]);
 }
 
+/// The job with checkpoints that nobody asked for.
+fn unasked() -> Vec<&'static str> {
+    with(&["solve", "--checkpoint-every", "0.01s"], &with(&JOB, &FILES))
+}
+
+#[test]
+fn who_asks_for_no_checkpoint_can_go_on_all_the_same() {
+    for signal in ["-KILL", "-INT"] {
+        let folder = Folder::new();
+        folder.prints(&with(&["solve", "-o", "whole.isolux", "-o", "whole.csv"], &JOB));
+        let mut child = folder.command(&unasked()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        while !folder.names().contains(&"a.isolux.checkpoint".to_owned()) {
+            assert!(child.try_wait().unwrap().is_none(), "it ended without a checkpoint");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        let stderr = child.wait_with_output().unwrap().stderr;
+        let told = String::from_utf8(stderr).unwrap().contains("solve --resume a.isolux.checkpoint' goes on");
+        assert_eq!(told, signal == "-INT");
+        // Who asks for the same again is told, and loses nothing.
+        let kept = folder.read("a.isolux.checkpoint");
+        let again = folder.run(&unasked());
+        assert!(String::from_utf8_lossy(&again.stderr).contains("a.isolux.checkpoint is there, of an earlier run"));
+        assert!(folder.read("a.isolux.checkpoint") == kept);
+        folder.prints(&with(&["solve", "--resume", "a.isolux.checkpoint"], &FILES));
+        assert!(["isolux", "csv"].iter().all(|x| folder.read(&format!("a.{x}")) == folder.read(&format!("whole.{x}"))));
+    }
+}
+
+#[test]
+fn a_checkpoint_that_nobody_asked_for_is_gone_in_the_end() {
+    let folder = Folder::new();
+    let said = folder.run(&unasked());
+    assert!(said.status.success() && !String::from_utf8_lossy(&said.stderr).contains("checkpoint"));
+    assert_eq!(folder.names(), ["a.csv", "a.isolux"]);
+    let none = with(&["solve", "--no-checkpoint"], &with(&SMALL, &["-o", "a.csv"]));
+    folder.prints(&none);
+    assert!(folder.fails(2, &with(&none, &["--checkpoint-every", "1s"])).contains("cannot be used with"));
+}
+
+#[test]
+fn an_output_that_cannot_be_written_costs_no_ray() {
+    let folder = Folder::new();
+    // The checkpoint fits on this disk, the output does not.
+    let limited = "trap '' XFSZ; ulimit -f 400; exec \"$0\" \"$@\"";
+    let mut command = Command::new("sh");
+    command.args(["-c", limited, env!("CARGO_BIN_EXE_isolux"), "solve", "--checkpoint-every", "0.01s"]);
+    command.args(JOB).args(["-o", "a.exr", "--width", "800"]).current_dir(folder.path("."));
+    let output = command.output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("solve --resume a.exr.checkpoint' goes on"), "{stderr}");
+    assert_eq!(folder.names(), ["a.exr.checkpoint"]);
+    folder.prints(&["solve", "--resume", "a.exr.checkpoint", "-o", "a.exr", "--width", "800"]);
+}
+
 #[test]
 fn a_finished_run_is_extended_by_further_rounds() {
     let folder = Folder::new();

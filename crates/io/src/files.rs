@@ -37,6 +37,14 @@ fn read_up_to(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Removes a file that is of no more use.
+///
+/// # Errors
+/// [`Error::File`] if it is not there, or its folder is read-only.
+pub fn remove(path: &Path) -> Result<(), Error> {
+    std::fs::remove_file(path).map_err(|source| Error::File { path: path.to_owned(), action: "remove", source })
+}
+
 /// A file that will be there, whole, once [`finish`](OutputFile::finish) was called, and not before. Dropped unfinished it
 /// leaves nothing behind and an older file of the same name as it was.
 #[derive(Debug)]
