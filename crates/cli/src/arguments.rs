@@ -5,7 +5,7 @@ use crate::numbers::parse_count;
 use isolux_core::Error;
 use isolux_core::scene::Scene;
 use isolux_io::export::{ExportOptions, Smoothing};
-use isolux_io::import::{ImportOptions, LightUnits};
+use isolux_io::import::{ImportOptions, Insides, LightUnits};
 use std::num::NonZeroU32;
 
 /// Which scene, and how it is read.
@@ -26,6 +26,18 @@ pub struct UnitArguments {
     /// What the intensities of a glTF file's lamps mean
     #[arg(long, value_name = "UNITS", default_value = "spec")]
     light_units: Units,
+
+    /// What becomes of the insides of closed two-sided surfaces, and the outside of a closed room: hide (they are no surfaces, for nobody sees
+    /// them) or keep (both sides count, as the file says)
+    #[arg(long, value_name = "WHAT", default_value = "hide")]
+    insides: Sides,
+}
+
+/// See [`Insides`].
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Sides {
+    Hide,
+    Keep,
 }
 
 /// The names of Blender's lighting modes, which does not say in the file which one was used.
@@ -46,7 +58,11 @@ impl UnitArguments {
             Units::Compat => LightUnits::Compat,
             Units::Raw => LightUnits::Raw,
         };
-        ImportOptions { light_units }
+        let insides = match self.insides {
+            Sides::Hide => Insides::Hide,
+            Sides::Keep => Insides::Keep,
+        };
+        ImportOptions { light_units, insides }
     }
 
     /// What the numbers in the file are taken for.

@@ -14,6 +14,8 @@ use serde_json::{Map, Value, json};
 
 /// Share of the light that may be lost on the backs of surfaces, or escape, without a word [1].
 const NOTICEABLE: f64 = 0.01;
+/// What reflects more than this share of some colour is no surface of this world.
+const MIRROR: f32 = 0.995;
 
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +57,12 @@ impl Summary<'_> {
                 percent(lost)
             ));
         }
+        if let Some(name) = self.mirror() {
+            warnings.push(format!(
+                "surfaces of '{name}' reflect all light they receive, or nearly all; between such surfaces light never ends, and what \
+                 leaks from there spoils the rest. Bring the base colour below 0.9; 'isolux check' shows where else."
+            ));
+        }
         if let Some(Reached { accuracy, bound, .. }) = self.missed() {
             let asked = percent(accuracy.error);
             warnings.push(if bound.is_finite() {
@@ -73,6 +81,13 @@ impl Summary<'_> {
             );
         }
         warnings
+    }
+
+    /// An object that absorbs next to nothing of some colour.
+    fn mirror(&self) -> Option<&str> {
+        let mesh = &self.problem.mesh;
+        let e = mesh.elements().find(|&e| mesh.reflectivity(e).max_channel() > MIRROR)?;
+        Some(&self.problem.scene.objects[self.problem.object(e) as usize].name)
     }
 
     /// What was reached, if more was asked for.

@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 use isolux_core::math::Rgb;
 use isolux_core::mesh::{ElementMesh, Resolution};
 use isolux_core::scene::{LightKind, Projection, Scene, Wrap};
-use isolux_io::import::{ImportOptions, LightUnits, read_scene};
+use isolux_io::import::{ImportOptions, Insides, LightUnits, read_scene};
 use serde_json::{Value, json};
 use std::f32::consts::PI;
 use std::path::Path;
@@ -17,7 +17,8 @@ use std::path::Path;
 fn read_as(name: &str, bytes: &[u8], light_units: LightUnits) -> Result<Scene, String> {
     let folder = folder();
     let path = write(folder.path(), name, bytes);
-    read_scene(&path, &ImportOptions { light_units }).map_err(|error| error.to_string())
+    let options = ImportOptions { light_units, ..ImportOptions::default() };
+    read_scene(&path, &options).map_err(|error| error.to_string())
 }
 
 fn read(name: &str, bytes: &[u8]) -> Scene {
@@ -46,6 +47,28 @@ fn room(name: &str) -> Option<Scene> {
         return None;
     };
     Some(read_scene(&path, &ImportOptions::default()).unwrap())
+}
+
+#[test]
+fn closed_things_have_no_inside_unless_it_is_kept() {
+    // Two tetrahedra, one in the other.
+    let corners = |size: f32| {
+        [[-size, -size, -size], [3.0 * size, -size, -size], [-size, 3.0 * size, -size], [-size, -size, 3.0 * size]]
+    };
+    let vertex = |p: &[f32; 3]| format!("v {} {} {}\n", p[0], p[1], p[2]);
+    let faces = |first: u32| {
+        let face = |[a, b, c]: [u32; 3]| format!("f {} {} {}\n", first + a, first + b, first + c);
+        [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(face).concat()
+    };
+    let all = |size: f32| corners(size).iter().map(vertex).collect::<String>();
+    let file = format!("{}o room\n{}{}o thing\n{}", all(2.0), faces(1), all(0.5), faces(5));
+    let folder = folder();
+    let path = write(folder.path(), "two.obj", file.as_bytes());
+    let read = |insides| read_scene(&path, &ImportOptions { insides, ..ImportOptions::default() }).unwrap();
+    let (hidden, kept) = (read(Insides::Hide), read(Insides::Keep));
+    let sides = |scene: &Scene| ElementMesh::new(scene, Resolution::MaxEdge(100.0)).unwrap().len();
+    assert_eq!((sides(&hidden), sides(&kept)), (8, 16));
+    assert!(has_remark(&hidden, "'room', 'thing': only the side") && !has_remark(&kept, "only the side"));
 }
 
 #[test]

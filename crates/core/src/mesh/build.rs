@@ -64,7 +64,7 @@ impl ElementMesh {
     fn push_triangle(&mut self, scene: &Scene, t: u32, slices: Slices) {
         let first_patch = self.patches.len() as u32;
         self.patches.extend((0..slices.patch_count()).map(|_| Patch { triangle: t, ..Patch::NONE }));
-        let (two_sided, normal) = (scene.material_of(t).two_sided, triangle::normal(scene.corners(t)));
+        let (two_sided, normal) = (scene.is_two_sided(t), triangle::normal(scene.corners(t)));
         self.surfaces.push(Surface { first_patch, slices, two_sided, normal });
     }
 

@@ -108,5 +108,5 @@ fn elements_of_patch(divisions: &mut impl Iterator<Item = u16>) -> Option<u64> {
 
 /// Number of sides of triangle `t` that have elements.
 pub fn sides(scene: &Scene, t: u32) -> u64 {
-    1 + u64::from(scene.material_of(t).two_sided)
+    1 + u64::from(scene.is_two_sided(t))
 }

@@ -99,7 +99,7 @@ fn area(scene: &Scene, t: u32) -> f64 {
         Shape::Triangles => 0.5 * topology::cross(scene, t).length(),
         Shape::Sphere { radius, .. } => 4.0 * PI * f64::from(radius).powi(2) / 8.0,
     };
-    if scene.material_of(t).two_sided { 2.0 * one_side } else { one_side }
+    if scene.is_two_sided(t) { 2.0 * one_side } else { one_side }
 }
 
 fn emitters(scene: &Scene) -> Vec<EmitterFlux> {

@@ -18,6 +18,7 @@ pub(super) fn scene_hash(scene: &Scene) -> u64 {
     for t in &scene.triangles {
         t.vertices.iter().chain([&scene.objects[t.object as usize].material]).for_each(|&k| hasher.count(k as usize));
     }
+    scene.hidden_backs.iter().for_each(|&hidden| hasher.count(usize::from(hidden)));
     hasher.count(scene.materials.len());
     for m in &scene.materials {
         hasher.rgb(m.reflectivity);

@@ -9,10 +9,12 @@ pub mod check;
 mod colors;
 mod contacts;
 mod image;
+mod insides;
 mod light;
 mod light_groups;
 mod material;
 mod shape;
+mod shells;
 mod validate;
 
 pub use camera::{Camera, Projection};
@@ -41,6 +43,8 @@ pub struct Scene {
     pub shape: Shape,
     /// Edges of triangles on which other surfaces stand, as sorted pairs of vertices in ascending order: see [`cut_at_contacts`].
     pub contacts: Vec<[u32; 2]>,
+    /// Which triangles have a back that nobody can see, whatever their material says; empty if none has: see [`Scene::hide_insides`].
+    pub hidden_backs: Vec<bool>,
     /// What the reader assumed, ignored or dropped, one sentence each, for people.
     pub remarks: Vec<String>,
 }
@@ -93,6 +97,12 @@ impl Scene {
     pub fn material_of(&self, t: u32) -> &Material {
         let object = self.triangles[t as usize].object;
         &self.materials[self.objects[object as usize].material as usize]
+    }
+
+    /// Whether the back of triangle `t` is a surface, too, and not black.
+    pub fn is_two_sided(&self, t: u32) -> bool {
+        let is_hidden = self.hidden_backs.get(t as usize).is_some_and(|hidden| *hidden);
+        self.material_of(t).two_sided && !is_hidden
     }
 
     /// Least and greatest corner of the box around all triangles [m]; both zero for a scene without triangles.

@@ -39,6 +39,11 @@ impl Scene {
             finite(&[c.position, c.forward, c.up].map(|v| v.to_array()).concat(), "direction or position")?;
             finite(&[size, c.aspect.unwrap_or(1.0)], "field of view")
         })?;
+        let (backs, triangles) = (self.hidden_backs.len(), self.triangles.len());
+        if backs != 0 && backs != triangles {
+            let what = format!("there are {backs} for {triangles} triangles");
+            return Err(Fault { place: "hidden_backs".into(), what });
+        }
         self.validate_shape().map_err(|what| Fault { place: "shape".into(), what })
     }
 

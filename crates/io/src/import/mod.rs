@@ -51,6 +51,17 @@ pub const FORMATS: &[Importer] = &[
 pub struct ImportOptions {
     /// How the intensities of KHR_lights_punctual are meant.
     pub light_units: LightUnits,
+    pub insides: Insides,
+}
+
+/// What happens to those sides of closed two-sided surfaces that nobody can see: see [`Scene::hide_insides`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Insides {
+    /// They are no surfaces.
+    #[default]
+    Hide,
+    /// They are surfaces like any other, as the file says.
+    Keep,
 }
 
 /// How the intensities of punctual lights in a glTF file are meant. The names are those of the lighting modes of
@@ -81,8 +92,24 @@ pub fn read_scene(path: &Path, options: &ImportOptions) -> Result<Scene, Error> 
     };
     let mut scene = (format.read)(path, &files::read(path)?, options)?;
     scene.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    if options.insides == Insides::Hide {
+        let objects = scene.hide_insides();
+        scene.remarks.extend(remark(&objects));
+    }
     Ok(scene)
 }
+
+/// What there is to say about `objects` whose insides are hidden.
+fn remark(objects: &[String]) -> Option<String> {
+    let named: Vec<String> = objects.iter().take(NAMED).map(|name| format!("'{name}'")).collect();
+    let more = if objects.len() > NAMED { format!(" and {} more", objects.len() - NAMED) } else { String::new() };
+    let named = named.join(", ");
+    let what = format!("closed surfaces of {named}{more}: only the side that can be seen counts");
+    (!objects.is_empty()).then_some(what)
+}
+
+/// How many objects a remark names.
+const NAMED: usize = 3;
 
 /// Reads the file that `reference` names from beside `path`.
 fn read_beside(path: &Path, reference: &str) -> Result<Vec<u8>, Error> {

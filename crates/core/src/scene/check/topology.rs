@@ -79,7 +79,7 @@ impl Topology {
 
     /// Edges that one-sided triangles run along more often in one direction than in the other, of those `selected`.
     fn unbalanced_edges(&self, scene: &Scene, selected: impl Fn(&[Edge]) -> bool) -> Vec<&Edge> {
-        let one_sided = |edge: &Edge| !scene.material_of(edge.triangle).two_sided;
+        let one_sided = |edge: &Edge| !scene.is_two_sided(edge.triangle);
         let unbalanced = |uses: &&[Edge]| 2 * uses.iter().filter(|edge| edge.forward).count() != uses.len();
         let uses = self.edges.chunk_by(|a, b| a.ends == b.ends).filter(unbalanced);
         uses.filter(|uses| selected(uses) && uses.iter().all(one_sided)).map(|uses| &uses[0]).collect()
@@ -90,7 +90,7 @@ impl Topology {
         if scene.shape != Shape::Triangles {
             return None;
         }
-        let two_sided = |t: u32| scene.material_of(t).two_sided;
+        let two_sided = |t: u32| scene.is_two_sided(t);
         let same = self.triangles.windows(2).filter(|pair| {
             let [(corners, odd, t), (others, other_odd, other)] = [pair[0], pair[1]];
             corners == others && (odd == other_odd || two_sided(t) || two_sided(other))

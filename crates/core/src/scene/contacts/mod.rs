@@ -47,24 +47,33 @@ pub fn cut_at_contacts(mut scene: Scene, detail: f32) -> Scene {
     };
     let found: Vec<_> = (0..scene.triangles.len() as u32).into_par_iter().filter_map(of_triangle).collect();
     let mut triangles = Vec::with_capacity(scene.triangles.len());
+    // Of which triangle each is a piece.
+    let mut wholes: Vec<usize> = Vec::with_capacity(scene.triangles.len());
     let mut copied = 0;
     for (t, plane, pieces, borders) in found {
         triangles.extend_from_slice(&scene.triangles[copied..t as usize]);
+        wholes.extend(copied..t as usize);
         copied = t as usize + 1;
         let whole = scene.triangles[t as usize];
         let border = |k: usize| [whole.vertices[k], whole.vertices[(k + 1) % 3]];
         scene.contacts.extend((0..3).filter(|&k| borders[k]).map(border).map(sorted));
         let Some(pieces) = pieces else {
             triangles.push(whole);
+            wholes.push(t as usize);
             continue;
         };
         let numbers: Vec<u32> =
             (0..).zip(&pieces.points).map(|(k, &point)| vertex(&mut scene, whole, &plane, k, point)).collect();
         let cut = pieces.triangles.iter().map(|piece| Triangle { vertices: piece.map(|k| numbers[k]), ..whole });
         triangles.extend(cut);
+        wholes.resize(triangles.len(), t as usize);
         scene.contacts.extend(pieces.contacts.iter().map(|edge| sorted(edge.map(|k| numbers[k]))));
     }
     triangles.extend_from_slice(&scene.triangles[copied..]);
+    wholes.extend(copied..scene.triangles.len());
+    if !scene.hidden_backs.is_empty() {
+        scene.hidden_backs = wholes.iter().map(|&t| scene.hidden_backs[t]).collect();
+    }
     scene.triangles = triangles;
     scene.contacts.sort_unstable();
     scene.contacts.dedup();

@@ -21,7 +21,7 @@ impl Contacts {
     /// Contacts of triangle `t`, which lies in `plane`. Groups of segments that hang together count if they reach over `detail` [m].
     pub fn of(scene: &Scene, t: u32, plane: &Plane, near: &Near, tolerance: f64, detail: f64) -> Contacts {
         let (mut inner, mut on_edges) = (Vec::new(), [const { Vec::new() }; 3]);
-        let two_sided = scene.material_of(t).two_sided;
+        let two_sided = scene.is_two_sided(t);
         for other in near.of(t) {
             let corners = scene.corners(other).map(|corner| corner.as_dvec3());
             let heights = corners.map(|corner| plane.height(corner));
