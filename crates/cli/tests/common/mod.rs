@@ -9,21 +9,27 @@ use std::process::{Command, Output};
 pub const SMALL: [&str; 6] = ["box", "--elements", "300", "--rays", "30k", "--width=40"];
 
 /// A folder that is removed in the end.
-pub struct Folder(tempfile::TempDir);
+pub struct Folder(PathBuf, Option<tempfile::TempDir>);
 
 impl Folder {
     pub fn new() -> Folder {
-        Folder(tempfile::tempdir().unwrap())
+        let folder = tempfile::tempdir().unwrap();
+        Folder(folder.path().to_owned(), Some(folder))
+    }
+
+    /// A folder in this one, which is there as long as this one is.
+    pub fn within(&self, name: &str) -> Folder {
+        Folder(self.path(name), None)
     }
 
     pub fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
+        self.0.join(name)
     }
 
     /// The program with `arguments`, in this folder.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_isolux"));
-        command.args(arguments).current_dir(self.0.path());
+        command.args(arguments).current_dir(&self.0);
         command
     }
 
@@ -63,7 +69,7 @@ impl Folder {
 
     /// Names of all files, sorted.
     pub fn names(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(Path::new(self.0.path())).unwrap();
+        let entries = std::fs::read_dir(&self.0).unwrap();
         let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
