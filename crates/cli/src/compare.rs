@@ -6,6 +6,7 @@ use crate::interrupt::watch;
 use crate::numbers::{count, decimals_for, digits, percent};
 use crate::terminal;
 use isolux_core::compare::{Comparison, Means, compare};
+use isolux_core::problem::name_of_side;
 use isolux_core::{Error, Problem, Solution};
 use serde_json::json;
 use std::path::PathBuf;
@@ -103,8 +104,11 @@ fn in_words(problem: &Problem, c: &Comparison) -> String {
         text += &format!("  mean irradiance     {}\n", means_in_words(means));
     }
     if let Some(worst) = c.objects.iter().max_by(|a, b| a.means.z.abs().total_cmp(&b.means.z.abs())) {
-        text +=
-            &format!("  least alike object  {}, '{}'\n", means_in_words(&worst.means), terminal::harmless(&worst.name));
+        text += &format!(
+            "  least alike object  {}, '{}'\n",
+            means_in_words(&worst.means),
+            terminal::harmless(&name_of_side(&worst.name, worst.side))
+        );
     }
     text += &match c.z {
         None => "  z                   unknown: there are no error bars\n".to_owned(),

@@ -6,6 +6,7 @@ use crate::numbers::{count, decimals_for, percent, time};
 use crate::output::{self, Written};
 use crate::progress::rays_in_words;
 use crate::report::{Table, balance};
+use isolux_core::problem::name_of_side;
 use isolux_core::report::{ObjectSummary, per_object};
 use isolux_core::solvers::deterministic::DETERMINISTIC;
 use isolux_core::{Accuracy, Problem, Solution};
@@ -193,17 +194,17 @@ impl Summary<'_> {
         let decimals = decimals_for(middle(shown.iter().map(|o| o.mean)), 4);
         let area_decimals = decimals_for(middle(shown.iter().map(|o| o.area)), 3);
         let mut table = Table::new(&["object", "area [m²]", "mean", "± 95 %", "min", "max"]);
-        for ObjectSummary { name, area, mean, min, max, certainty, .. } in shown {
+        for ObjectSummary { name, side, area, mean, min, max, certainty, .. } in shown {
             let lux = |value: f64| format!("{value:.decimals$}");
             let margin = certainty.map_or(String::new(), |mean| lux(mean.margin(CONFIDENCE)));
-            table.row(name, [format!("{area:.area_decimals$}"), lux(*mean), margin, lux(*min), lux(*max)]);
+            table.row(
+                &name_of_side(name, *side),
+                [format!("{area:.area_decimals$}"), lux(*mean), margin, lux(*min), lux(*max)],
+            );
         }
         let mut text = format!("\nIrradiance [lux], largest objects first\n{}", table.lines());
         if shown.len() < objects.len() {
-            text += &format!(
-                "  and {} more objects; --objects all shows them\n",
-                count((objects.len() - shown.len()) as u64)
-            );
+            text += &format!("  and {} more; --objects all shows them\n", count((objects.len() - shown.len()) as u64));
         }
         text
     }

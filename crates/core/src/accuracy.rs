@@ -28,7 +28,7 @@ pub enum Quantity {
     Max,
     /// That of the mean irradiance of the scene.
     Mean,
-    /// That of the mean irradiance of an object, by its number.
+    /// That of the mean irradiance of an object, by its number: of the side that gets more light, if it has two.
     Object(u32),
 }
 
@@ -60,8 +60,10 @@ impl Quantity {
             }
             Quantity::Mean => relative_margin(&certainty.scene, confidence),
             Quantity::Object(object) => {
-                let object = certainty.objects.get(object as usize);
-                object.map_or(f64::NAN, |object| relative_margin(object, confidence))
+                let first = 2 * object as usize;
+                let sides = certainty.faces.iter().skip(first).take(2).filter(|side| !side.mean.is_nan());
+                let brighter = sides.max_by(|front, back| front.mean.total_cmp(&back.mean));
+                brighter.map_or(f64::NAN, |side| relative_margin(side, confidence))
             }
         }
     }

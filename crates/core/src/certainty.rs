@@ -21,8 +21,9 @@ const MANY: f64 = 1e4;
 pub struct Certainty {
     /// Mean irradiance by area of all surfaces.
     pub scene: Estimate,
-    /// Mean irradiance by area of each object of the scene; not a number where it has no elements.
-    pub objects: Vec<Estimate>,
+    /// Mean irradiance by area of the front and then of the back of each object of the scene ([`Problem::face`](crate::Problem::face)); not a
+    /// number where there are no elements.
+    pub faces: Vec<Estimate>,
     /// The area-weighted mean square error [lux²] that is expected.
     pub mean_square: f64,
     pub freedom: f64,
@@ -86,10 +87,10 @@ impl Certainty {
     pub fn merged(&self, other: &Certainty, weight: f64) -> Certainty {
         let square = |of: &Certainty| Estimate { mean: 0.0, variance: of.mean_square, freedom: of.freedom };
         let merged = square(self).merged(square(other), weight);
-        let objects = self.objects.iter().zip(&other.objects);
+        let faces = self.faces.iter().zip(&other.faces);
         Certainty {
             scene: self.scene.merged(other.scene, weight),
-            objects: objects.map(|(a, b)| a.merged(*b, weight)).collect(),
+            faces: faces.map(|(a, b)| a.merged(*b, weight)).collect(),
             mean_square: merged.variance,
             freedom: merged.freedom,
             ways: self.ways.merged(other.ways),
@@ -102,7 +103,7 @@ impl Certainty {
         let sum = square(self).plus(square(other));
         Certainty {
             scene: self.scene.plus(other.scene),
-            objects: self.objects.iter().zip(&other.objects).map(|(a, b)| a.plus(*b)).collect(),
+            faces: self.faces.iter().zip(&other.faces).map(|(a, b)| a.plus(*b)).collect(),
             mean_square: sum.variance,
             freedom: sum.freedom,
             ways: self.ways.summed(other.ways, [self.mean_square, other.mean_square]),
@@ -152,7 +153,7 @@ mod tests {
     #[test]
     fn the_bound_of_one_way_is_students() {
         let scene = Estimate { mean: 10.0, variance: 0.04, freedom: 7.0 };
-        let one = Certainty { scene, objects: vec![], mean_square: 0.04, freedom: 7.0, ways: Ways::default() };
+        let one = Certainty { scene, faces: vec![], mean_square: 0.04, freedom: 7.0, ways: Ways::default() };
         assert!((one.rms() - 0.02).abs() < 1e-12);
         assert!((one.rms_bound(0.95) * 10.0 / scene.margin(0.95) - 1.0).abs() < 1e-3);
         let many = Certainty { ways: Ways { sum_sq: 0.0, freedom: 100.0 }, ..one.clone() };

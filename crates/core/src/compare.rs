@@ -5,6 +5,7 @@
 //! element is `z = (a - b) / sqrt(s² + t²)`, about standard normal if the solutions are independent, unbiased and honest.
 
 use crate::math::Estimate;
+use crate::problem::Side;
 use crate::solution::luminance_error;
 use crate::{Certainty, Error, Problem, Solution};
 
@@ -40,6 +41,8 @@ pub struct Means {
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct ObjectMeans {
     pub name: String,
+    /// Which side of it, if it has two.
+    pub side: Option<Side>,
     #[serde(flatten)]
     pub means: Means,
 }
@@ -120,9 +123,12 @@ pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -
 }
 
 fn means_of_objects(problem: &Problem, a: &Certainty, b: &Certainty) -> Vec<ObjectMeans> {
-    let objects = problem.scene.objects.iter().zip(a.objects.iter().zip(&b.objects));
-    let lit = objects.filter(|(_, (a, _))| !a.mean.is_nan());
-    lit.map(|(object, (a, b))| ObjectMeans { name: object.name.clone(), means: Means::of(a, b) }).collect()
+    let faces = problem.sides().into_iter().enumerate().zip(a.faces.iter().zip(&b.faces));
+    let means = |((face, side), (a, b)): ((usize, _), _)| {
+        let name = problem.scene.objects[face / 2].name.clone();
+        ObjectMeans { name, side, means: Means::of(a, b) }
+    };
+    faces.filter(|(_, (a, _))| !a.mean.is_nan()).map(means).collect()
 }
 
 impl Scores {
@@ -214,7 +220,7 @@ mod tests {
         let certain = |mean: f64, error: f64| {
             let scene = Estimate { mean, variance: error * error, freedom: 7.0 };
             let ways = crate::certainty::Ways::default();
-            let certainty = Certainty { scene, objects: vec![scene], mean_square: 1.0, freedom: 7.0, ways };
+            let certainty = Certainty { scene, faces: vec![scene], mean_square: 1.0, freedom: 7.0, ways };
             Solution { certainty: Some(certainty), ..solution(&problem, [10.0, 1.0], [20.0, 1.0]) }
         };
         let c = compare(&problem, &certain(10.0, 3.0), &problem, &certain(20.0, 4.0)).unwrap();

@@ -16,7 +16,7 @@ pub mod math;
 pub mod merge;
 pub mod mesh;
 pub mod precision;
-mod problem;
+pub mod problem;
 pub mod report;
 pub mod run;
 pub mod sampling;

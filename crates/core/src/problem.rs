@@ -50,6 +50,28 @@ impl Problem {
         self.scene.triangles[self.mesh.triangle(e) as usize].object
     }
 
+    /// Number of the face on which element `e` lies: twice its object's, and one more on the back of two-sided surfaces. What falls on the two sides of
+    /// a wall has nothing in common, so it is told apart wherever light on objects is summed.
+    pub fn face(&self, e: u32) -> u32 {
+        2 * self.object(e) + u32::from(self.mesh.place(e).back)
+    }
+
+    /// How many numbers of faces there are.
+    pub fn faces(&self) -> usize {
+        2 * self.scene.objects.len()
+    }
+
+    /// For each face, which side of its object it is, if that has elements on both.
+    pub fn sides(&self) -> Vec<Option<Side>> {
+        let mut is_there = vec![false; self.faces()];
+        self.mesh.elements().for_each(|e| is_there[self.face(e) as usize] = true);
+        let of_object = |pair: &[bool]| match pair {
+            [true, true] => [Some(Side::Front), Some(Side::Back)],
+            _ => [None, None],
+        };
+        is_there.chunks(2).flat_map(of_object).collect()
+    }
+
     /// Flux [lm] per channel that the sources of `group` emit.
     pub fn flux_of(&self, group: &LightGroup) -> [f64; 3] {
         let objects = group.objects(&self.scene);
@@ -89,6 +111,23 @@ impl Problem {
         } else {
             None
         }
+    }
+}
+
+/// A side of two-sided surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    Front,
+    Back,
+}
+
+/// `Floor`, or `Floor, back` if it has two sides.
+pub fn name_of_side(name: &str, side: Option<Side>) -> String {
+    match side {
+        None => name.to_owned(),
+        Some(Side::Front) => format!("{name}, front"),
+        Some(Side::Back) => format!("{name}, back"),
     }
 }
 

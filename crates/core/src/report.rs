@@ -1,14 +1,17 @@
 //! What a solution says about each named object: how much light it gets, and what it does with it.
 
 use crate::math::Estimate;
+use crate::problem::Side;
 use crate::{Problem, Solution};
 
-/// Light on one object, both sides of two-sided surfaces counted; everything is luminance.
+/// Light on one object, or on one side of it; everything is luminance.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct ObjectSummary {
     /// Index into [`crate::scene::Scene::objects`].
     pub object: u32,
     pub name: String,
+    /// Which side of it, if it has elements on both.
+    pub side: Option<Side>,
     pub elements: u64,
     /// [m²]
     pub area: f64,
@@ -41,28 +44,29 @@ pub fn error_bar<S: serde::Serializer>(estimate: &Option<Estimate>, serializer: 
     serde::Serialize::serialize(&bar, serializer)
 }
 
-/// One summary for each object that has elements, in the order of the scene's objects.
+/// One summary for each object that has elements, two if it has them on both sides, in the order of the scene's objects.
 pub fn per_object(problem: &Problem, solution: &Solution) -> Vec<ObjectSummary> {
     let (scene, mesh) = (&problem.scene, &problem.mesh);
-    let empty = |(k, object): (usize, &crate::scene::Object)| ObjectSummary {
-        object: k as u32,
-        name: object.name.clone(),
+    let empty = |(face, side): (usize, Option<Side>)| ObjectSummary {
+        object: face as u32 / 2,
+        name: scene.objects[face / 2].name.clone(),
+        side,
         elements: 0,
         area: 0.0,
         mean: 0.0,
         min: f64::INFINITY,
         max: f64::NEG_INFINITY,
-        certainty: solution.certainty.as_ref().and_then(|certainty| certainty.objects.get(k).copied()),
+        certainty: solution.certainty.as_ref().and_then(|certainty| certainty.faces.get(face).copied()),
         emitted: 0.0,
         incident: 0.0,
         reflected: 0.0,
     };
-    let mut summaries: Vec<ObjectSummary> = scene.objects.iter().enumerate().map(empty).collect();
+    let mut summaries: Vec<ObjectSummary> = problem.sides().into_iter().enumerate().map(empty).collect();
     for e in mesh.elements() {
         let irradiance = solution.irradiance[e as usize];
         let area = f64::from(mesh.area(e));
         let lux = irradiance.luminance_f64();
-        let summary = &mut summaries[problem.object(e) as usize];
+        let summary = &mut summaries[problem.face(e) as usize];
         summary.elements += 1;
         summary.area += area;
         summary.min = summary.min.min(lux);
@@ -118,5 +122,26 @@ mod tests {
         assert!(close(b.mean, 8.0) && close(b.incident, 8.0) && close(b.reflected, 2.0) && close(b.emitted, 3.0));
         assert!(close(a.mean, floor.iter().sum::<f64>() / floor.len() as f64));
         assert_eq!((a.min, a.max), (floor[0], floor[floor.len() - 1]));
+    }
+
+    #[test]
+    fn the_two_sides_of_a_wall_have_means_of_their_own() {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let material = Material { two_sided: true, ..Material::diffuse("grey", Rgb::grey(0.25)) };
+        let scene = Scene {
+            vertices: corners.map(Vertex::at).to_vec(),
+            triangles: vec![Triangle { vertices: [0, 1, 2], object: 0, source: 0 }],
+            objects: vec![Object { name: "wall".into(), material: 0 }],
+            materials: vec![material],
+            ..Scene::default()
+        };
+        let problem = Problem::new(scene, Resolution::MaxEdge(0.5)).unwrap();
+        let lux = |e: u32| Rgb::grey(if problem.mesh.place(e).back { 0.0 } else { 300.0 });
+        let irradiance: Vec<Rgb> = problem.mesh.elements().map(lux).collect();
+        let solution = Solution { std_error: irradiance.clone(), irradiance, ..Solution::default() };
+        let [front, back] = per_object(&problem, &solution).try_into().unwrap();
+        assert_eq!((front.side, back.side), (Some(Side::Front), Some(Side::Back)));
+        assert_eq!((front.mean, back.mean, front.elements, back.elements), (300.0, 0.0, 9, 9));
+        assert!((front.area - 0.5).abs() < 1e-6 && front.object == back.object && front.name == back.name);
     }
 }

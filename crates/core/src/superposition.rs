@@ -54,23 +54,23 @@ fn certainty(problem: &Problem, part: &GroupLight) -> Option<Certainty> {
     let GroupLight { factor, solution: Solution { irradiance, std_error, certainty, .. }, .. } = part;
     let known = certainty.as_ref()?;
     let mesh = &problem.mesh;
-    // Flux on the whole scene and on each object, and squares of errors, as they are and times the factor.
-    let mut flux = vec![[0.0; 2]; 1 + problem.scene.objects.len()];
+    // Flux on the whole scene and on each face, and squares of errors, as they are and times the factor.
+    let mut flux = vec![[0.0; 2]; 1 + problem.faces()];
     let mut square = [0.0; 2];
     for e in mesh.elements() {
         let area = f64::from(mesh.area(e));
-        let object = problem.object(e) as usize;
+        let face = problem.face(e) as usize;
         for (k, factor) in [Rgb::WHITE, *factor].into_iter().enumerate() {
             let light = area * (irradiance[e as usize] * factor).luminance_f64();
             flux[0][k] += light;
-            flux[1 + object][k] += light;
+            flux[1 + face][k] += light;
             square[k] += area * (std_error[e as usize] * factor).luminance_f64().powi(2);
         }
     }
     let change = |[before, after]: [f64; 2]| ratio(after, before);
     Some(Certainty {
         scene: known.scene.times(change(flux[0])),
-        objects: known.objects.iter().zip(&flux[1..]).map(|(object, &flux)| object.times(change(flux))).collect(),
+        faces: known.faces.iter().zip(&flux[1..]).map(|(face, &flux)| face.times(change(flux))).collect(),
         mean_square: known.mean_square * change(square),
         freedom: known.freedom,
         ways: known.ways,
@@ -140,7 +140,7 @@ mod tests {
         let estimate = Estimate { mean: light.luminance_f64(), variance: 0.04, freedom: 7.0 };
         let certainty = Certainty {
             scene: estimate,
-            objects: vec![estimate; problem.scene.objects.len()],
+            faces: vec![estimate; problem.faces()],
             mean_square: 0.25,
             freedom: 7.0,
             ways: Default::default(),

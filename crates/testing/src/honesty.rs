@@ -49,19 +49,20 @@ pub fn of_error(problem: &Problem, runs: &[Solution], exact: &Exact) -> Deviatio
 pub fn of_objects(problem: &Problem, runs: &[Solution], exact: &Exact, replicates: u32) -> Vec<Deviation> {
     let dof = f64::from(replicates) - 1.0;
     let mesh = &problem.mesh;
-    let (mut sums, mut areas) = (vec![0.0; problem.scene.objects.len()], vec![0.0; problem.scene.objects.len()]);
+    let (mut sums, mut areas) = (vec![0.0; problem.faces()], vec![0.0; problem.faces()]);
     for e in mesh.elements() {
-        let object = problem.object(e) as usize;
+        let face = problem.face(e) as usize;
         let [r, g, b] = exact[e as usize].map(|value| value as f32);
-        sums[object] += f64::from(mesh.area(e)) * Rgb::new(r, g, b).luminance_f64();
-        areas[object] += f64::from(mesh.area(e));
+        sums[face] += f64::from(mesh.area(e)) * Rgb::new(r, g, b).luminance_f64();
+        areas[face] += f64::from(mesh.area(e));
     }
     let scene = sums.iter().sum::<f64>() / areas.iter().sum::<f64>();
     let exact = || std::iter::once(scene).chain(sums.iter().zip(&areas).map(|(sum, area)| sum / area));
     let scores = |run: &Solution| -> Vec<f64> {
         let certainty = run.certainty.as_ref().expect("replicates enough");
-        let estimates = std::iter::once(&certainty.scene).chain(&certainty.objects);
-        estimates.zip(exact()).map(|(estimate, exact)| (estimate.mean - exact) / estimate.std_error()).collect()
+        let estimates = std::iter::once(&certainty.scene).chain(&certainty.faces);
+        let scored = estimates.zip(exact()).filter(|(_, exact)| !exact.is_nan());
+        scored.map(|(estimate, exact)| (estimate.mean - exact) / estimate.std_error()).collect()
     };
     let mean = |run: &Solution, f: &dyn Fn(f64) -> f64| {
         let scores = scores(run);

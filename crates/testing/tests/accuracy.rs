@@ -83,7 +83,7 @@ fn means_are_those_of_the_elements() {
         let mean = objects.iter().map(|object| object.incident).sum::<f64>() / area;
         assert!((certainty.scene.mean / mean - 1.0).abs() < 1e-5, "{budget:?}");
         for object in objects {
-            let estimate = certainty.objects[object.object as usize];
+            let estimate = certainty.faces[2 * object.object as usize];
             assert!((estimate.mean / object.mean - 1.0).abs() < 1e-5, "{}", object.name);
         }
     }

@@ -8,10 +8,10 @@ use crate::certainty::{Certainty, Ways};
 use crate::math::moments::Moments;
 use crate::math::{Estimate, Rgb};
 
-/// Running means over replicates and rounds; a few numbers for each object.
+/// Running means over replicates and rounds; a few numbers for each face.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Totals {
-    /// Mean irradiance of the scene, and then of each object, of the running round [lux].
+    /// Mean irradiance of the scene, and then of each face, of the running round [lux].
     means: Vec<Moments>,
     /// Square distances of the running round's replicates from the mean of those before [lux²]: each is an independent estimate of
     /// the variance of a replicate.
@@ -22,13 +22,12 @@ pub struct Totals {
 impl Totals {
     /// Adds a replicate of this luminance `irradiance(e)` [lux]; `square` [lux²] is its distance from those before.
     pub fn push(&mut self, problem: &Problem, irradiance: impl Fn(u32) -> Rgb, square: Option<f64>) {
-        let (scene, mesh) = (&problem.scene, &problem.mesh);
-        let mut sums = vec![(0.0, 0.0); 1 + scene.objects.len()];
+        let mesh = &problem.mesh;
+        let mut sums = vec![(0.0, 0.0); 1 + problem.faces()];
         for e in mesh.elements() {
             let area = f64::from(mesh.area(e));
             let flux = area * irradiance(e).luminance_f64();
-            let object = problem.object(e) as usize;
-            for k in [0, 1 + object] {
+            for k in [0, 1 + problem.face(e) as usize] {
                 sums[k].0 += flux;
                 sums[k].1 += area;
             }
@@ -55,7 +54,7 @@ impl Totals {
         let mut means = self.means.iter().map(estimate);
         let now = Certainty {
             scene: means.next().unwrap_or(Estimate::UNKNOWN),
-            objects: means.collect(),
+            faces: means.collect(),
             mean_square: self.squares.iter().sum::<f64>() / (count - 1.0) / count,
             freedom: count - 1.0,
             ways: Ways::of(&self.squares),

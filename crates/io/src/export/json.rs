@@ -105,8 +105,10 @@ mod tests {
         assert_eq!(read["elements"], problem.mesh.len());
         assert_eq!((&read["seed"], &read["seconds"]), (&json!(u64::MAX), &json!(1.5)));
         assert_eq!(read["balance"]["absorbed"], 90.0);
-        assert_eq!(read["objects"].as_array().map(Vec::len), Some(6));
-        assert_eq!(read["objects"][5]["name"], "größe");
+        // The first five have one side, the last one two.
+        assert_eq!(read["objects"].as_array().map(Vec::len), Some(7));
+        assert_eq!((&read["objects"][0]["side"], &read["objects"][5]["side"]), (&Value::Null, &"front".into()));
+        assert_eq!((&read["objects"][6]["name"], &read["objects"][6]["side"]), (&"größe".into(), &"back".into()));
         assert_eq!(read["rms_error_estimate"], Value::Null, "one element has no standard error");
     }
 }
