@@ -130,7 +130,9 @@ fn check(layout: &Layout) -> Result<(), Error> {
         return wrong("padding", layout.padding.to_string(), "1 to 64 texels");
     }
     match layout.density {
-        Density::Size(size) if !(16..=MOST_SIZE).contains(&size) => wrong("size", size.to_string(), "16 to 16384 texels"),
+        Density::Size(size) if !(16..=MOST_SIZE).contains(&size) => {
+            wrong("size", size.to_string(), "16 to 16384 texels")
+        }
         Density::Size(size) if layout.align_blocks && size % 4 != 0 => {
             wrong("size", size.to_string(), "with aligned blocks it is a multiple of 4")
         }

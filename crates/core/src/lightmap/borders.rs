@@ -8,9 +8,9 @@
 
 use super::texels::stencil;
 use super::{Atlas, Border, Texels};
+use crate::Problem;
 use crate::math::Rgb;
 use crate::view::VertexField;
-use crate::Problem;
 use glam::Vec2;
 use rayon::prelude::*;
 
@@ -48,7 +48,8 @@ pub fn fit(
         unknowns(row).filter(|&(texel, _)| is_free(texel)).for_each(|(texel, weight)| total[texel] += weight);
     }
     let mut change = vec![Rgb::BLACK; irradiance.len()];
-    let mut free: Vec<usize> = rows.iter().flat_map(unknowns).map(|(texel, _)| texel).filter(|&t| total[t] > 0.0).collect();
+    let mut free: Vec<usize> =
+        rows.iter().flat_map(unknowns).map(|(texel, _)| texel).filter(|&t| total[t] > 0.0).collect();
     free.sort_unstable();
     free.dedup();
     for _ in 0..ITERATIONS {

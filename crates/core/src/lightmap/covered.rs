@@ -7,12 +7,12 @@
 //! edge of light.
 
 use super::{Atlas, Texel, Texels};
+use crate::Problem;
 use crate::geometry::{Hit, Ray};
 use crate::math::warp::square_to_cosine_hemisphere;
 use crate::math::{Frame, Rgb};
 use crate::view::cover::sees_a_light;
 use crate::view::{VertexField, plastic};
-use crate::Problem;
 use rayon::prelude::*;
 
 /// Texels with less than this share of the light beside them may be covered.
@@ -49,7 +49,9 @@ pub fn covered(
         found.iter().for_each(|&(texel, _)| is_covered[texel] = true);
         let mut next: Vec<(usize, f32)> = Vec::new();
         for &(texel, around) in &found {
-            next.extend(beside(texel).filter(|&other| !is_tested[other]).map(|other| (other, around)).filter(is_darker));
+            next.extend(
+                beside(texel).filter(|&other| !is_tested[other]).map(|other| (other, around)).filter(is_darker),
+            );
         }
         // Each once, held against the brightest of the lights that lead to it.
         next.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
@@ -70,8 +72,7 @@ fn sees_only_darkness(
 ) -> bool {
     let face = &atlas.faces[shown.face as usize];
     let (position, normal) = face.surface(problem, shown.at);
-    let start =
-        Ray { origin: position + problem.geometry.lift() * normal, direction: normal, from: face.triangle };
+    let start = Ray { origin: position + problem.geometry.lift() * normal, direction: normal, from: face.triangle };
     if sees_a_light(problem, &start) {
         return false;
     }

@@ -35,9 +35,9 @@ pub fn coordinates(problem: &Problem, face: &Face) -> [Vec2; 3] {
 /// # Errors
 /// [`Error::Lightmap`] if that is too large; it says what fits.
 pub fn size(problem: &Problem, faces: &[Face], uv: &[[Vec2; 3]], layout: &Layout) -> Result<u32, Error> {
-    let Density::TexelsPerMetre(asked) = layout.density else {
-        let Density::Size(size) = layout.density else { return Ok(MOST_SIZE) };
-        return Ok(size);
+    let asked = match layout.density {
+        Density::Size(size) => return Ok(size),
+        Density::TexelsPerMetre(asked) => asked,
     };
     let surface: f64 = faces.iter().map(|face| area(problem, face)).sum();
     let of_unit_map: f64 = uv.iter().map(|uv| area_in_texels(uv, DVec2::ONE)).sum();

@@ -1,10 +1,10 @@
 //! What a lightmap shows: the sides of triangles that get light.
 
+use crate::Problem;
 use crate::math::Rgb;
 use crate::mesh::cells;
 use crate::scene::Shape;
 use crate::view::VertexField;
-use crate::Problem;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 

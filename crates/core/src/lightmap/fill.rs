@@ -13,7 +13,8 @@ const NONE: u32 = u32::MAX;
 /// what it has.
 pub fn continue_under(atlas: &Atlas, texels: &Texels, covered: &[bool], irradiance: &mut [Rgb]) {
     let chart = charts(atlas, texels);
-    let mut known: Vec<u32> = chart.iter().zip(covered).map(|(&chart, &hidden)| if hidden { NONE } else { chart }).collect();
+    let mut known: Vec<u32> =
+        chart.iter().zip(covered).map(|(&chart, &hidden)| if hidden { NONE } else { chart }).collect();
     let may_take = |texel: usize, from: u32| covered[texel] && chart[texel] == from;
     let start = (0..covered.len()).filter(|&texel| covered[texel]).collect();
     continue_into(texels, &mut known, irradiance, start, may_take, Some(atlas.padding));
@@ -43,7 +44,8 @@ fn continue_into(
     waiting.retain(|&texel| known[texel] == NONE);
     let mut wave: Vec<usize> = waiting.into_iter().filter(|&t| texels.around(t).any(|n| known[n] != NONE)).collect();
     for _ in 0..waves.unwrap_or(u32::MAX) {
-        let mean = |&texel: &usize| mean_around(texels, known, irradiance, texel, &may_take).map(|found| (texel, found));
+        let mean =
+            |&texel: &usize| mean_around(texels, known, irradiance, texel, &may_take).map(|found| (texel, found));
         let found: Vec<(usize, (u32, Rgb))> = wave.iter().filter_map(mean).collect();
         if found.is_empty() {
             break;
@@ -52,7 +54,8 @@ fn continue_into(
             known[texel] = chart;
             irradiance[texel] = light;
         }
-        wave = found.iter().flat_map(|&(texel, _)| texels.around(texel)).filter(|&texel| known[texel] == NONE).collect();
+        wave =
+            found.iter().flat_map(|&(texel, _)| texels.around(texel)).filter(|&texel| known[texel] == NONE).collect();
         wave.sort_unstable();
         wave.dedup();
     }

@@ -17,12 +17,14 @@ mod covered;
 mod existing;
 mod faces;
 mod fill;
+mod lit;
 mod summary;
 mod texels;
 mod unwrap;
 
 pub use atlas::{Atlas, Border, Density, Layout, Origin};
 pub use faces::Face;
+pub use lit::radiosity;
 pub use summary::{ObjectTexels, per_object};
 pub use texels::{Texel, Texels};
 
@@ -70,4 +72,3 @@ impl Lightmap {
         stencil.into_iter().map(|(texel, weight)| self.irradiance[texel] * weight).sum()
     }
 }
-

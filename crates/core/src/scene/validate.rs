@@ -46,7 +46,10 @@ impl Scene {
     fn validate_lightmap_uvs(&self) -> Result<(), Fault> {
         let (count, vertices) = (self.lightmap_uvs.len(), self.vertices.len());
         if count != 0 && count != vertices {
-            return Err(Fault { place: "lightmap_uvs".into(), what: format!("there are {count} for {vertices} vertices") });
+            return Err(Fault {
+                place: "lightmap_uvs".into(),
+                what: format!("there are {count} for {vertices} vertices"),
+            });
         }
         each("lightmap_uvs", &self.lightmap_uvs, |uv| finite(&uv.to_array(), "lightmap coordinate"))
     }

@@ -25,13 +25,28 @@ pub fn encode_png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<Vec<u8>
 /// # Errors
 /// [`Error::Invalid`] if `pixels` are not `width * height`.
 pub fn encode_exr(width: u32, height: u32, pixels: &[Rgb]) -> Result<Vec<u8>, Error> {
+    encode_exr_layer(width, height, pixels, "picture", None)
+}
+
+/// As [`encode_exr`], with the name of the layer, and a comment in the header.
+///
+/// # Errors
+/// [`Error::Invalid`] if `pixels` are not `width * height`.
+pub fn encode_exr_layer(
+    width: u32,
+    height: u32,
+    pixels: &[Rgb],
+    name: &str,
+    comment: Option<&str>,
+) -> Result<Vec<u8>, Error> {
     check_size("exr", width, height, pixels.len())?;
     let (width, height) = (width as usize, height as usize);
     let channels = SpecificChannels::rgb(|at: exr::math::Vec2<usize>| {
         let color = pixels[at.y() * width + at.x()];
         (color.r, color.g, color.b)
     });
-    let mut attributes = LayerAttributes::named("picture");
+    let mut attributes = LayerAttributes::named(name);
+    attributes.comments = comment.and_then(Text::new_or_none);
     attributes.software_name = Text::new_or_none(format!("isolux {}", isolux_core::VERSION));
     let layer = exr::image::Layer::new((width, height), attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut file = std::io::Cursor::new(Vec::new());

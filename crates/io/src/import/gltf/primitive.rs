@@ -90,7 +90,11 @@ pub fn read(
         let [a, b, c] = corners(mode, t).map(corner);
         if mirrored { [a, c, b] } else { [a, b, c] }
     });
-    reading.builder.lightmapped_surface(Surface { place, name, material, vertex_count, joins: false }, triangles, vertex)
+    reading.builder.lightmapped_surface(
+        Surface { place, name, material, vertex_count, joins: false },
+        triangles,
+        vertex,
+    )
 }
 
 fn triangle_count(mode: Mode, corners: usize) -> usize {
