@@ -72,3 +72,6 @@ impl Lightmap {
         stencil.into_iter().map(|(texel, weight)| self.irradiance[texel] * weight).sum()
     }
 }
+
+#[cfg(test)]
+mod tests;

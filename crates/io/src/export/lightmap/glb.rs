@@ -123,8 +123,8 @@ fn add_materials(baked: &BakedScene, glb: &mut GlbBuilder) -> Result<(), Error> 
 /// Adds a map as a texture; gives its index.
 fn add_map(glb: &mut GlbBuilder, png: &[u8]) -> usize {
     let source = glb.add_image_png("lightmap", png);
-    // Linear between texels, and between the levels of a mipmap; no repetition.
-    let sampler = json!({ "magFilter": 9_729, "minFilter": 9_987, "wrapS": 33_071, "wrapT": 33_071 });
+    // Linear between texels, no repetition, and no mipmap: a coarse level mixes charts, and draws dark lines along their borders.
+    let sampler = json!({ "magFilter": 9_729, "minFilter": 9_729, "wrapS": 33_071, "wrapT": 33_071 });
     let sampler = glb.push("samplers", sampler);
     glb.push("textures", json!({ "sampler": sampler, "source": source }))
 }

@@ -5,10 +5,10 @@ mod manifest;
 mod maps;
 
 use crate::Error;
-use isolux_core::lightmap::Layout;
-use isolux_core::lightmap::{Lightmap, ObjectTexels, bake, per_object};
+use isolux_core::lightmap::{Layout, Lightmap, ObjectTexels, bake, per_object};
 use isolux_core::view::{Exposure, VertexField};
 use isolux_core::{Problem, Solution};
+use std::f32::consts::PI;
 use std::path::Path;
 
 /// How a `.glb` brings its light.
@@ -115,7 +115,7 @@ impl<'a> BakedScene<'a> {
     ) -> Result<BakedScene<'a>, Error> {
         let lightmap = bake(problem, field, layout)?;
         let objects = per_object(problem, solution, &lightmap);
-        let lux_at_white = white(&lightmap);
+        let lux_at_white = white(&lightmap, exposure);
         Ok(BakedScene { problem, solution, lightmap, objects, carrier, exposure, lux_at_white, files })
     }
 
@@ -140,9 +140,14 @@ fn on_surfaces(lightmap: &Lightmap) -> Vec<f32> {
     shown.map(|(_, light)| light.max_channel()).collect()
 }
 
-fn white(lightmap: &Lightmap) -> f32 {
+/// Irradiance [lux] that only few texels exceed; no more than what makes a surface of reflectivity 1/2 white when it is exposed.
+fn white(lightmap: &Lightmap, exposure: Exposure) -> f32 {
     let mut levels = on_surfaces(lightmap);
     levels.sort_by(f32::total_cmp);
     let clipped = (CLIPPED * levels.len() as f64) as usize;
-    levels.iter().rev().nth(clipped).copied().filter(|white| *white > 0.0).unwrap_or(1.0)
+    let white = levels.iter().rev().nth(clipped).copied().filter(|white| *white > 0.0).unwrap_or(1.0);
+    white.min(2.0 * PI / exposure.scale())
 }
+
+#[cfg(test)]
+mod tests;
