@@ -174,3 +174,12 @@ fn every_format_and_carrier_writes_the_same_bytes_each_time() {
     let message = for_path(Path::new("a.obj")).unwrap_err().to_string();
     assert!(message.contains(".glb, .exr, .png, .json"), "{message}");
 }
+
+#[test]
+fn coordinates_of_a_texture_are_not_taken_for_a_lightmaps() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    std::fs::write(&path, crate::export::scene_glb::write(&fixture::scene()).unwrap()).unwrap();
+    let scene = read_scene(&path, &ImportOptions::default()).unwrap();
+    assert!(scene.lightmap_uvs.is_empty() && scene.remarks.iter().all(|remark| !remark.contains("TEXCOORD")));
+}
