@@ -190,7 +190,7 @@ fn box_on_floor() -> (Problem, VertexField) {
     builder.polygon(&[[0.0, 0.0, 0.0], [0.0, 0.0, 2.0], [2.0, 0.0, 2.0], [2.0, 0.0, 0.0]].map(Vec3::from));
     builder.object("box", white);
     builder.cuboid(Vec3::new(LOW, 0.0, LOW), Vec3::new(HIGH, 0.5, HIGH));
-    let problem = Problem::new(builder.finish(), Resolution::Elements(1500)).unwrap();
+    let problem = Problem::new(builder.finish(), Resolution::Elements(12_000)).unwrap();
     let share = |e: u32| {
         let point = |k: u32| {
             let square = Vec2::new((k % 16) as f32 + 0.5, (k / 16) as f32 + 0.5) / 16.0;
@@ -217,8 +217,8 @@ fn darkening_beside_box(problem: &Problem, field: &VertexField, lightmap: &Light
     let mut most: f32 = 0.0;
     for (f, face) in lightmap.atlas.faces.iter().enumerate().filter(|(_, face)| face.object(problem) == 0) {
         let [a, b, c] = lightmap.atlas.uv[f];
-        for cell in 0..cells::count(400) {
-            let at = cells::corners(cell, 400).iter().sum::<Vec2>() / 3.0;
+        for cell in 0..cells::count(200) {
+            let at = cells::corners(cell, 200).iter().sum::<Vec2>() / 3.0;
             if !is_below(face.surface(problem, at).0) {
                 let found = lightmap.lookup(a + at.x * (b - a) + at.y * (c - a)).g;
                 most = most.max(face.irradiance(problem, field, at).g - found);
@@ -232,7 +232,7 @@ fn darkening_beside_box(problem: &Problem, field: &VertexField, lightmap: &Light
 fn a_box_on_a_floor_has_no_dark_fringe() {
     let (problem, field) = box_on_floor();
     for padding in [1, 4] {
-        let lightmap = bake(&problem, &field, &Layout { padding, ..size(256) }).unwrap();
+        let lightmap = bake(&problem, &field, &Layout { padding, ..size(64) }).unwrap();
         let darker = darkening_beside_box(&problem, &field, &lightmap);
         assert!(darker < 0.05 && lightmap.covered > 0, "{darker}, {} texels covered", lightmap.covered);
         // The planted fault: texels below the box keep what they have.
@@ -243,7 +243,7 @@ fn a_box_on_a_floor_has_no_dark_fringe() {
             }
         }
         let fault = darkening_beside_box(&problem, &field, &unmended);
-        assert!(fault > 2.0 * darker.max(0.025), "{fault}, mended {darker}");
+        assert!(fault > 0.2, "{fault}, mended {darker}");
     }
 }
 

@@ -1,7 +1,8 @@
 //! The files of small lightmaps, read with other programs' eyes.
 
 use super::*;
-use crate::export::LitScene;
+use crate::export::{LitScene, scene_glb};
+use crate::files::OutputFile;
 use crate::fixture;
 use crate::import::{ImportOptions, read_scene};
 use glam::Vec2;
@@ -138,7 +139,7 @@ fn what_was_baked_once_keeps_its_coordinates() {
     with_baked(Carrier::Sidecar, |baked, _| {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.glb");
-        std::fs::write(&path, glb::write(baked).unwrap()).unwrap();
+        OutputFile::create(&path).unwrap().finish(&glb::write(baked).unwrap()).unwrap();
         let scene = read_scene(&path, &ImportOptions::default()).unwrap();
         assert_eq!(scene.lightmap_uvs.len(), scene.vertices.len());
         let problem = Problem::new(scene, isolux_core::mesh::Resolution::Elements(200)).unwrap();
@@ -179,7 +180,7 @@ fn every_format_and_carrier_writes_the_same_bytes_each_time() {
 fn coordinates_of_a_texture_are_not_taken_for_a_lightmaps() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glb");
-    std::fs::write(&path, crate::export::scene_glb::write(&fixture::scene()).unwrap()).unwrap();
+    OutputFile::create(&path).unwrap().finish(&scene_glb::write(&fixture::scene()).unwrap()).unwrap();
     let scene = read_scene(&path, &ImportOptions::default()).unwrap();
     assert!(scene.lightmap_uvs.is_empty() && scene.remarks.iter().all(|remark| !remark.contains("TEXCOORD")));
 }
