@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod arguments;
+mod bake;
 mod budget;
 mod check;
 mod checkpoints;
@@ -44,6 +45,7 @@ Examples:
   isolux solve cornell-box -o cornell.png         light a built-in room and take a picture
   isolux solve room.glb -o lit.glb -o lit.isolux  a lit model for any viewer, and the solution
   isolux render lit.isolux -o view.png            another picture, without solving again
+  isolux bake lit.isolux -o room-lightmap.glb     light in a texture, for engines
   isolux merge a.isolux b.isolux -o both.isolux   one better solution of two seeds
   isolux mix lit.isolux --set Lamp=0.3 -o dim.png lamps dimmed, after solve --light-groups
   isolux check room.glb                           what is in a file, and what is wrong with it
@@ -70,6 +72,7 @@ struct Cli {
 enum Command {
     Solve(Box<solve::Solve>),
     Render(render::Render),
+    Bake(bake::Bake),
     Check(check::Check),
     Compare(compare::Compare),
     Merge(merge::Merge),
@@ -98,6 +101,7 @@ fn execute(command: Option<Command>) -> Result<u8, Failure> {
         None => terminal::print(&Cli::command().render_help().ansi().to_string()).map(|()| 0),
         Some(Command::Solve(solve)) => solve.run(),
         Some(Command::Render(render)) => render.run(),
+        Some(Command::Bake(bake)) => bake.run(),
         Some(Command::Check(check)) => check.run(),
         Some(Command::Compare(compare)) => compare.run(),
         Some(Command::Merge(merge)) => merge.run(),

@@ -115,7 +115,7 @@ fn lists_help_and_version_teach() {
     assert!(folder.prints(&["list", "sequences"]).contains("scrambled-halton"));
     assert!(folder.prints(&[]).contains("Usage: isolux"));
     assert!(folder.prints(&["--version"]).starts_with("isolux "));
-    for command in ["solve", "render", "check", "compare", "merge", "mix", "scene", "factors", "list"] {
+    for command in ["solve", "render", "bake", "check", "compare", "merge", "mix", "scene", "factors", "list"] {
         assert!(folder.prints(&[command, "--help"]).contains("Examples:"), "{command}");
         assert!(folder.prints(&["--help"]).contains(command));
     }

@@ -31,6 +31,10 @@ pub enum Error {
     #[error("the solutions cannot be merged: {what}")]
     NotMergeable { what: String },
 
+    /// A lightmap that cannot be made; the text says why, and what to ask for.
+    #[error("there is no such lightmap: {what}")]
+    Lightmap { what: String },
+
     /// A number that is not finite reached the solver.
     #[error("element {element} has {what} {value}, which is not a finite number")]
     NotFinite { element: u32, what: &'static str, value: f32 },

@@ -12,6 +12,7 @@ pub mod compare;
 mod error;
 pub mod form_factors;
 pub mod geometry;
+pub mod lightmap;
 pub mod math;
 pub mod merge;
 pub mod mesh;

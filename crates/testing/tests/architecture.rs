@@ -17,7 +17,7 @@ const LAYERS: &[(usize, &[&str])] = &[
     (7, &["form_factors", "accuracy", "superposition"]),
     (8, &["solvers"]),
     (9, &["run", "view", "report", "compare", "merge"]),
-    (10, &["adaptive"]),
+    (10, &["adaptive", "lightmap"]),
 ];
 
 /// Names re-exported at the root, and where they live.

@@ -25,6 +25,7 @@ impl Scene {
             finite(&v.color.to_array(), "colour")?;
             finite(&[v.uv.x, v.uv.y, v.emission_uv.x, v.emission_uv.y], "texture coordinate")
         })?;
+        self.validate_lightmap_uvs()?;
         each("triangles", &self.triangles, |t| {
             t.vertices.iter().try_for_each(|&v| index(v, &self.vertices, "vertex"))?;
             index(t.object, &self.objects, "object")
@@ -45,6 +46,17 @@ impl Scene {
             return Err(Fault { place: "hidden_backs".into(), what });
         }
         self.validate_shape().map_err(|what| Fault { place: "shape".into(), what })
+    }
+
+    fn validate_lightmap_uvs(&self) -> Result<(), Fault> {
+        let (count, vertices) = (self.lightmap_uvs.len(), self.vertices.len());
+        if count != 0 && count != vertices {
+            return Err(Fault {
+                place: "lightmap_uvs".into(),
+                what: format!("there are {count} for {vertices} vertices"),
+            });
+        }
+        each("lightmap_uvs", &self.lightmap_uvs, |uv| finite(&uv.to_array(), "lightmap coordinate"))
     }
 
     fn validate_shape(&self) -> Result<(), String> {

@@ -92,7 +92,7 @@ fn is_dark(problem: &Problem, solution: &Solution, hit: &Hit, darkness: f32) -> 
 }
 
 /// Whether a light without extent shines on the point from which `start` looks along the normal.
-fn sees_a_light(problem: &Problem, start: &Ray) -> bool {
+pub fn sees_a_light(problem: &Problem, start: &Ray) -> bool {
     let beyond = 4.0 * problem.geometry.bounding_sphere().1;
     problem.scene.lights.iter().any(|light| {
         let (direction, reach) = match light.kind {

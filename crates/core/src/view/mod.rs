@@ -9,13 +9,13 @@
 
 pub mod camera_rays;
 mod contacts;
-mod cover;
+pub(crate) mod cover;
 pub(crate) mod crease;
 mod default_view;
 mod grid;
 pub(crate) mod neighbours;
 pub mod picture;
-mod plastic;
+pub(crate) mod plastic;
 mod pycnophylactic;
 mod seams;
 pub mod smooth;

@@ -98,13 +98,14 @@ fn curve(x: f32) -> f32 {
 /// 8-bit sRGB of a linear display colour for the pixel (x, y), with half a step of ordered noise against banding
 /// (interleaved gradient noise, Jimenez 2014).
 pub fn to_srgb8(color: Rgb, x: u32, y: u32) -> [u8; 3] {
+    to_linear8(color.map(|v| linear_to_srgb(v.clamp(0.0, 1.0))), x, y)
+}
+
+/// As [`to_srgb8`], without the encoding: 0 to 255 are equal steps of light.
+pub fn to_linear8(color: Rgb, x: u32, y: u32) -> [u8; 3] {
     let noise = (52.982_918 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract();
-    let encode = |v: f32| {
-        let steps = linear_to_srgb(v.clamp(0.0, 1.0)) * 255.0;
-        // Exact black and white stay without noise.
-        (steps + 0.25 + 0.5 * noise) as u8
-    };
-    color.to_array().map(encode)
+    // Exact black and white stay without noise.
+    color.to_array().map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.25 + 0.5 * noise) as u8)
 }
 
 #[cfg(test)]

@@ -22,12 +22,26 @@ pub fn encode_png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<Vec<u8>
     Ok(file)
 }
 
+/// What an OpenEXR file says of itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Label<'a> {
+    /// Of the layer.
+    pub name: &'a str,
+    pub comment: Option<&'a str>,
+}
+
 /// Linear Rec. 709 pixels, rows from the top, as OpenEXR with 32-bit floats, losslessly compressed; and `more` pictures of that size, by the
 /// name that comes before the dot of their channels.
 ///
 /// # Errors
 /// [`Error::Invalid`] if a picture has not `width * height` pixels.
-pub fn encode_exr(width: u32, height: u32, pixels: &[Rgb], more: &[(&str, &[Rgb])]) -> Result<Vec<u8>, Error> {
+pub fn encode_exr(
+    width: u32,
+    height: u32,
+    pixels: &[Rgb],
+    more: &[(&str, &[Rgb])],
+    label: Label,
+) -> Result<Vec<u8>, Error> {
     let mut channels = SmallVec::new();
     for (layer, pixels) in std::iter::once(("", pixels)).chain(more.iter().copied()) {
         check_size("exr", width, height, pixels.len())?;
@@ -39,7 +53,8 @@ pub fn encode_exr(width: u32, height: u32, pixels: &[Rgb], more: &[(&str, &[Rgb]
     }
     let (width, height) = (width as usize, height as usize);
     let channels = AnyChannels::sort(channels);
-    let mut attributes = LayerAttributes::named("picture");
+    let mut attributes = LayerAttributes::named(label.name);
+    attributes.comments = label.comment.and_then(Text::new_or_none);
     attributes.software_name = Text::new_or_none(format!("isolux {}", isolux_core::VERSION));
     let layer = exr::image::Layer::new((width, height), attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut file = std::io::Cursor::new(Vec::new());
@@ -69,7 +84,7 @@ mod tests {
 
         let pixels: Vec<Rgb> = (0..6).map(|k| Rgb::new(1e-5 * k as f32, 0.1 + k as f32, 1e5)).collect();
         let errors: Vec<Rgb> = pixels.iter().map(|color| *color * 0.5).collect();
-        let exr = encode_exr(3, 2, &pixels, &[("std_error", &errors)]).unwrap();
+        let exr = encode_exr(3, 2, &pixels, &[("std_error", &errors)], Label::default()).unwrap();
         let read = ::image::load_from_memory_with_format(&exr, ImageFormat::OpenExr).unwrap().into_rgb32f();
         let flat: Vec<f32> = pixels.iter().flat_map(|c| c.to_array()).collect();
         assert_eq!((read.dimensions(), read.as_raw().as_slice()), ((3, 2), flat.as_slice()));
@@ -84,7 +99,7 @@ mod tests {
     #[test]
     fn wrong_sizes_are_errors() {
         assert!(encode_png(2, 2, &[[0; 3]; 3]).is_err());
-        assert!(encode_exr(0, 0, &[], &[]).is_err());
-        assert!(encode_exr(1, 1, &[Rgb::BLACK], &[("std_error", &[])]).is_err());
+        assert!(encode_exr(0, 0, &[], &[], Label::default()).is_err());
+        assert!(encode_exr(1, 1, &[Rgb::BLACK], &[("std_error", &[])], Label::default()).is_err());
     }
 }

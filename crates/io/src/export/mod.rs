@@ -7,6 +7,7 @@ mod glb;
 pub mod glb_container;
 pub mod image;
 pub mod json;
+pub mod lightmap;
 mod npz;
 mod picture;
 mod ply;

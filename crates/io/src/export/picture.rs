@@ -1,6 +1,6 @@
 //! A picture of the solution: tone-mapped as PNG, linear in cd/m² as OpenEXR.
 
-use super::image::{encode_exr, encode_png};
+use super::image::{Label, encode_exr, encode_png};
 use super::{ExportOptions, LitScene};
 use crate::Error;
 use isolux_core::view::{self, Exposure, ViewOptions};
@@ -13,7 +13,8 @@ pub fn write_png(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Err
 pub fn write_exr(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> {
     let picture = view::render_field(lit.problem, lit.field(), &view_options(options))?;
     let std_error = picture.std_error.as_deref().map(|errors| ("std_error", errors));
-    encode_exr(picture.width, picture.height, &picture.luminance, std_error.as_slice())
+    let label = Label { name: "picture", comment: Some("luminance in cd/m^2, linear Rec. 709") };
+    encode_exr(picture.width, picture.height, &picture.luminance, std_error.as_slice(), label)
 }
 
 /// What of the options concerns a picture.

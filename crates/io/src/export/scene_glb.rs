@@ -40,7 +40,7 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
         glb.add_image_png(&image.name, &encode_png(image.width, image.height, &image.texels)?);
     }
     for material in &scene.materials {
-        let material = material_json(&mut glb, material);
+        let material = material_json(&mut glb, material, 1);
         glb.push("materials", material);
     }
     let mut nodes = Vec::new();
@@ -112,7 +112,9 @@ fn own_vertices(scene: &Scene, triangles: &[u32]) -> (Vec<Vertex>, Vec<u32>) {
     (vertices, indices)
 }
 
-fn material_json(glb: &mut GlbBuilder, material: &Material) -> Value {
+/// A material as glTF has it, luminances in cd/m²; the texture of its emission takes the set `emission_coordinates` of texture
+/// coordinates. Images of the scene are expected to be those of the file.
+pub(super) fn material_json(glb: &mut GlbBuilder, material: &Material, emission_coordinates: u32) -> Value {
     let [r, g, b] = material.reflectivity.to_array();
     let mut surface = json!({ "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0 });
     if let Some(texture) = &material.reflectivity_texture {
@@ -126,7 +128,7 @@ fn material_json(glb: &mut GlbBuilder, material: &Material) -> Value {
         json["extensions"] = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": brightest / PI } });
     }
     if let Some(texture) = &material.emission_texture {
-        json["emissiveTexture"] = json!({ "index": texture_index(glb, texture), "texCoord": 1 });
+        json["emissiveTexture"] = json!({ "index": texture_index(glb, texture), "texCoord": emission_coordinates });
     }
     json
 }
@@ -170,7 +172,7 @@ fn light_node(glb: &mut GlbBuilder, index: usize, light: &Light) -> usize {
 }
 
 /// Cameras look along the -z axis of their node, y upwards.
-fn camera_node(glb: &mut GlbBuilder, camera: &Camera) -> usize {
+pub(super) fn camera_node(glb: &mut GlbBuilder, camera: &Camera) -> usize {
     let mut json = json!({ "name": camera.name });
     match camera.projection {
         Projection::Perspective { vertical_angle } => {

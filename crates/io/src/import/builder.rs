@@ -2,7 +2,7 @@
 
 use super::images;
 use crate::Error;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use isolux_core::math::Rgb;
 use isolux_core::scene::{Material, Object, Scene, Triangle, Vertex};
 use std::collections::BTreeMap;
@@ -24,6 +24,8 @@ pub struct SceneBuilder<'a> {
     surfaces: u32,
     /// Objects that later surfaces may join, by name and material.
     open: BTreeMap<(String, u32), u32>,
+    /// Coordinates in a lightmap of every vertex of the scene, where the file has them.
+    lightmap_uvs: Vec<Option<Vec2>>,
 }
 
 /// A mesh with one material, as a reader hands it over.
@@ -48,6 +50,7 @@ impl<'a> SceneBuilder<'a> {
             numbers: Vec::new(),
             surfaces: 0,
             open: BTreeMap::new(),
+            lightmap_uvs: Vec::new(),
         }
     }
 
@@ -62,6 +65,19 @@ impl<'a> SceneBuilder<'a> {
         surface: Surface,
         triangles: impl Iterator<Item = [u32; 3]>,
         mut vertex: impl FnMut(u32) -> Vertex,
+    ) -> Result<(), Error> {
+        self.lightmapped_surface(surface, triangles, |corner| (vertex(corner), None))
+    }
+
+    /// As [`SceneBuilder::surface`], with coordinates in a lightmap for each vertex, if the file has them.
+    ///
+    /// # Errors
+    /// Those of [`SceneBuilder::surface`].
+    pub fn lightmapped_surface(
+        &mut self,
+        surface: Surface,
+        triangles: impl Iterator<Item = [u32; 3]>,
+        mut vertex: impl FnMut(u32) -> (Vertex, Option<Vec2>),
     ) -> Result<(), Error> {
         let place = surface.place;
         let key = (surface.name, surface.material);
@@ -89,10 +105,12 @@ impl<'a> SceneBuilder<'a> {
                     );
                 }
                 if self.numbers[corner as usize].0 != self.surfaces {
-                    let vertex = vertex(corner);
+                    let (vertex, lightmap_uv) = vertex(corner);
                     check(&vertex).map_err(|what| self.error(place, format!("vertex {corner}: {what}")))?;
                     self.numbers[corner as usize] = (self.surfaces, self.scene.vertices.len() as u32);
                     self.scene.vertices.push(vertex);
+                    // Those that are no numbers are no coordinates of a map.
+                    self.lightmap_uvs.push(lightmap_uv.filter(|uv| uv.is_finite()));
                 }
                 *number = self.numbers[corner as usize].1;
             }
@@ -104,6 +122,7 @@ impl<'a> SceneBuilder<'a> {
         }
         if self.scene.triangles.len() == first_triangle {
             self.scene.vertices.truncate(first_vertex);
+            self.lightmap_uvs.truncate(first_vertex);
         } else if known.is_none() {
             self.scene.objects.push(Object { name: key.0.clone(), material: key.1 });
             self.open.insert(key, object);
@@ -165,6 +184,13 @@ impl<'a> SceneBuilder<'a> {
         if self.dropped > 0 {
             let (dropped, seen) = (self.dropped, self.seen);
             self.remark(format!("{dropped} of {seen} triangles have no area and were dropped"));
+        }
+        let known = self.lightmap_uvs.iter().flatten().count();
+        if known == self.scene.vertices.len() {
+            self.scene.lightmap_uvs = self.lightmap_uvs.into_iter().flatten().collect();
+        } else if known > 0 {
+            let without = self.lightmap_uvs.len() - known;
+            self.remark(format!("TEXCOORD_1 is no lightmap's: {without} vertices have none"));
         }
         self.scene
     }

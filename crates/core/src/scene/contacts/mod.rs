@@ -89,6 +89,9 @@ fn vertex(scene: &mut Scene, whole: Triangle, plane: &Plane, k: usize, point: DV
     let (u, v) = plane.barycentric(point);
     let w = 1.0 - u - v;
     let (u, v, w) = (u as f32, v as f32, w as f32);
+    if let [Some(a), Some(b), Some(c)] = whole.vertices.map(|v| scene.lightmap_uvs.get(v as usize).copied()) {
+        scene.lightmap_uvs.push(a * w + b * u + c * v);
+    }
     scene.vertices.push(Vertex {
         position: plane.on_surface(point),
         color: a.color * w + b.color * u + c.color * v,

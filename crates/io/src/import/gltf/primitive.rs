@@ -14,6 +14,9 @@ use gltf::json::validation::Checked;
 use isolux_core::math::Rgb;
 use isolux_core::scene::Vertex;
 
+/// The second set of texture coordinates is a lightmap's, by custom, unless a texture uses it.
+const LIGHTMAP_SET: u32 = 1;
+
 /// Adds `primitive`, which stands at `place` in the file, as the object `name`; `world` takes its coordinates to the world.
 ///
 /// # Errors
@@ -54,15 +57,23 @@ pub fn read(
     };
     let (uv, emission_uv) = (coordinates(reflectivity)?, coordinates(emission)?);
 
+    let textures = [reflectivity, emission].into_iter().flatten();
+    let lightmap_uvs = match textures.map(|mapping| mapping.set).any(|set| set == LIGHTMAP_SET) {
+        true => None,
+        false => attributes.get(Semantic::TexCoords(LIGHTMAP_SET), &[Type::Vec2], Some(vertex_count))?,
+    };
+
     let vertex = |i: u32| {
         let i = i as usize;
         let [x, y, z, _] = positions.get(i);
-        Vertex {
+        let lightmap_uv = lightmap_uvs.as_ref().map(|uvs| uvs.get(i)).map(|[u, v, ..]| Vec2::new(u as f32, v as f32));
+        let vertex = Vertex {
             position: world.transform_point3(DVec3::new(x, y, z)).as_vec3(),
             color: colors.as_ref().map_or(Rgb::WHITE, |colors| rgb(colors.get(i))),
             uv: texture_coordinates(&uv, i),
             emission_uv: texture_coordinates(&emission_uv, i),
-        }
+        };
+        (vertex, lightmap_uv)
     };
     let indices_place = format!("{place}/indices");
     let indices = match primitive.indices {
@@ -79,7 +90,11 @@ pub fn read(
         let [a, b, c] = corners(mode, t).map(corner);
         if mirrored { [a, c, b] } else { [a, b, c] }
     });
-    reading.builder.surface(Surface { place, name, material, vertex_count, joins: false }, triangles, vertex)
+    reading.builder.lightmapped_surface(
+        Surface { place, name, material, vertex_count, joins: false },
+        triangles,
+        vertex,
+    )
 }
 
 fn triangle_count(mode: Mode, corners: usize) -> usize {
