@@ -66,7 +66,7 @@ export class Groups {
       this.apply();
     });
     const label = make("label", { htmlFor: id, textContent: name, title: name });
-    return make("div", { className: "group" }, label, value, slider, filter);
+    return make("div", { className: "group" }, label, slider, value, filter);
   }
 
   private give(g: number, { level, filter }: Setting): void {

@@ -5,8 +5,10 @@ import { byId } from "./page";
 import { levels, PALETTES, position } from "./scale";
 import type { Viewer } from "./viewer";
 
-const [WIDTH, HEIGHT, BAR] = [132, 264, 16];
+const [WIDTH, BAR] = [132, 16];
 const [TOP, BOTTOM, LEFT] = [30, 12, 12];
+/** Height of the whole, on a desk and on a phone. */
+const [TALL, SHORT] = [264, 190];
 
 /** What the values are, and how the unit is called. */
 function title(viewer: Viewer): string {
@@ -33,22 +35,23 @@ export class Legend {
     this.canvas.hidden = isLight && !settings.lines;
     if (this.canvas.hidden) return;
     const values = levels(scale);
+    const height = window.innerWidth < 700 ? SHORT : TALL;
     const ratio = Math.min(window.devicePixelRatio, 2);
     this.canvas.width = WIDTH * ratio;
-    this.canvas.height = HEIGHT * ratio;
+    this.canvas.height = height * ratio;
     this.canvas.style.width = `${WIDTH}px`;
-    this.canvas.style.height = `${HEIGHT}px`;
+    this.canvas.style.height = `${height}px`;
     this.canvas.setAttribute("aria-label", `${title(this.viewer)} from ${scale.low} to ${scale.high}`);
     const context = this.canvas.getContext("2d")!;
     context.scale(ratio, ratio);
     context.fillStyle = "rgba(20, 21, 23, 0.86)";
     context.beginPath();
-    context.roundRect(0, 0, WIDTH, HEIGHT, 8);
+    context.roundRect(0, 0, WIDTH, height, 8);
     context.fill();
     context.font = "600 11px system-ui, sans-serif";
     context.fillStyle = "#e8e8e6";
     context.fillText(title(this.viewer), LEFT, 19);
-    const length = HEIGHT - TOP - BOTTOM;
+    const length = height - TOP - BOTTOM;
     const at = (value: number) => TOP + length * (1 - position(scale, value));
     if (!isLight) {
       for (let y = 0; y < length; y++) {
@@ -66,7 +69,7 @@ export class Legend {
       // Where two would overlap only the lower one is written.
       if (above - y < 12) continue;
       context.fillStyle = "#c9c9c5";
-      context.fillText(label(value), LEFT + BAR + 10, Math.min(Math.max(y, TOP + 2), HEIGHT - BOTTOM - 2));
+      context.fillText(label(value), LEFT + BAR + 10, Math.min(Math.max(y, TOP + 2), height - BOTTOM - 2));
       above = y;
     }
   }

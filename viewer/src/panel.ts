@@ -63,7 +63,10 @@ export class Panel {
         viewer.update();
       });
     }
-    for (const field of [this.low, this.high]) field.addEventListener("change", () => this.setEnds());
+    for (const field of [this.low, this.high]) {
+      field.addEventListener("change", () => this.setEnds());
+      field.addEventListener("blur", () => viewer.update());
+    }
     byId("range-auto").addEventListener("click", () => {
       settings.ends = {};
       viewer.update();
@@ -132,7 +135,7 @@ export class Panel {
   }
 
   private press(event: KeyboardEvent): void {
-    if (isTyping(event) || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (this.help.open || isTyping(event) || event.ctrlKey || event.metaKey || event.altKey) return;
     const key = event.key.toLowerCase();
     const toggle = TOGGLES.find(([, of]) => of === key);
     if (toggle) this.toggle(toggle[0]);

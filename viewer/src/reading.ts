@@ -62,16 +62,17 @@ export class ReadingCard {
     const [r, g, b] = [0, 1, 2].map((c) => surfaces.reflectivities[3 * e + c]!) as [number, number, number];
     byId("reading-lux").textContent = `${withMargin(reading.lux, reading.margin)} lx`;
     byId("reading-note").textContent = Number.isNaN(reading.margin)
-      ? "this element, as computed; its error is not known"
-      : "this element, as computed, with 95 % confidence";
+      ? "this element; how sure that is, is not known"
+      : "this element, with 95 % confidence";
     const rows: [string, string][] = [];
     rows.push(["Here, between elements", `${significant(luminance(...irradiance), 4)} lx`]);
     rows.push(...this.compared(drawing, e));
     rows.push(
       ["Object", surfaces.header.objects[object] || `number ${object}`],
       ["Material", surfaces.materialOf[object] || "without a name"],
-      ["Reflectivity", `${significant(100 * luminance(r, g, b), 3)} %  (${[r, g, b].map((v) => v.toFixed(2)).join(", ")})`],
-      ["Red, green, blue", `${reading.irradiance.map((v) => significant(v, 4)).join(", ")} lx`],
+      ["Reflectivity", `${significant(100 * luminance(r, g, b), 3)} %`],
+      ["… red, green, blue", [r, g, b].map((v) => v.toFixed(2)).join(", ")],
+      ["Irradiance, r g b", `${reading.irradiance.map((v) => significant(v, 3)).join(", ")} lx`],
       ["Element", `${e}, ${area(surfaces.areas[e]!)}`],
       ["Position", `${metres(position)} m`],
     );
@@ -108,5 +109,5 @@ function area(squareMetres: number): string {
 }
 
 function metres({ x, y, z }: Vector3): string {
-  return [x, y, z].map((v) => v.toFixed(3)).join(", ");
+  return [x, y, z].map((v) => v.toFixed(2)).join(", ");
 }

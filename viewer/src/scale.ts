@@ -31,7 +31,7 @@ export function position({ low, high, logarithmic }: Scale, value: number): numb
 export function levels({ low, high, logarithmic }: Scale): number[] {
   const found: number[] = [];
   if (!logarithmic) {
-    const step = roundStep((high - low) / 9);
+    const step = roundStep((high - low) / 11);
     for (let k = Math.ceil(low / step - 1e-6); k * step <= high * (1 + 1e-9) + step * 1e-6; k++) found.push(tidy(k * step));
     return found.slice(0, MOST_LEVELS);
   }
@@ -52,19 +52,25 @@ export function roundStep(least: number): number {
   return tidy(power * ([1, 2, 5].find((factor) => factor * power >= least * (1 - 1e-9)) ?? 10));
 }
 
+/** A round number that is at least `least`, and not much more. */
+function roundUp(least: number): number {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return tidy(power * ([1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8].find((factor) => factor * power >= least * (1 - 1e-9)) ?? 10));
+}
+
 /** Without the dust of binary fractions. */
 function tidy(value: number): number {
   return Number(value.toPrecision(9));
 }
 
 /**
- * A scale for `values` that count as much as `weights`: its ends are round, and leave out a hundredth below and a two-hundredth
- * above. A logarithmic one has at most three decades.
+ * A scale for `values` that count as much as `weights`: its ends are round, and leave out a twentieth below and
+ * three hundredths above: lamps and window frames are not what the others are seen for. A logarithmic one has at most three decades.
  */
 export function automatic(values: Float32Array, weights: Float32Array, logarithmic: boolean): Scale {
-  const [bottom, top] = quantiles(values, weights, [0.01, 0.995]);
+  const [bottom, top] = quantiles(values, weights, [0.05, 0.97]);
   if (!(top! > 0)) return { low: logarithmic ? 0.1 : 0, high: 1, logarithmic };
-  const high = roundStep(top!);
+  const high = roundUp(top!);
   if (!logarithmic) return { low: 0, high, logarithmic };
   const low = Math.max(bottom!, high / 1000);
   const power = 10 ** Math.floor(Math.log10(low));
@@ -74,8 +80,8 @@ export function automatic(values: Float32Array, weights: Float32Array, logarithm
 
 /** A scale that is as wide to either side of nothing. */
 export function symmetric(values: Float32Array, weights: Float32Array): Scale {
-  const [top] = quantiles(values.map(Math.abs), weights, [0.99]);
-  const high = top! > 0 ? roundStep(top!) : 1;
+  const [top] = quantiles(values.map(Math.abs), weights, [0.97]);
+  const high = top! > 0 ? roundUp(top!) : 1;
   return { low: -high, high, logarithmic: false };
 }
 

@@ -3,7 +3,7 @@ precision highp float;
 precision highp int;
 
 in vec3 vPosition;
-in vec3 vIrradiance;
+centroid in vec3 vIrradiance;
 flat in uint vElement;
 
 uniform int what;

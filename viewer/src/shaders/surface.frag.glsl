@@ -6,11 +6,11 @@ precision highp sampler2D;
 const int LIGHT = 0, ILLUMINANCE = 1, ERROR = 2, DIFFERENCE = 3;
 
 in vec3 vPosition;
-in vec3 vIrradiance;
-in vec3 vIrradianceBefore;
-in vec2 vUv;
-in vec2 vEmissionUv;
-in vec3 vTint;
+centroid in vec3 vIrradiance;
+centroid in vec3 vIrradianceBefore;
+centroid in vec2 vUv;
+centroid in vec2 vEmissionUv;
+centroid in vec3 vTint;
 flat in uint vElement;
 
 uniform int mode;
@@ -79,11 +79,15 @@ vec3 falseColour(float value) {
 // How much of a pixel lies on an isolux line, in [0, 1].
 float onLine(float lux) {
   float change = max(fwidth(lux), 1e-6 * abs(lux) + 1e-20);
-  float nearest = 1e30;
-  for (int k = 0; k < levelCount; k++) nearest = min(nearest, abs(lux - levels[k]));
-  // Where light is as good as even a line would be as wide as the wall.
-  float steep = smoothstep(0.0, 2e-5 * lux, change);
-  return steep * (1.0 - smoothstep(0.5 * lineWidth - 0.5, 0.5 * lineWidth + 0.5, nearest / change));
+  float below = -1e30, above = 1e30;
+  for (int k = 0; k < levelCount; k++) {
+    if (levels[k] <= lux) below = levels[k];
+    else above = min(above, levels[k]);
+  }
+  float nearest = min(lux - below, above - lux);
+  // Where light is as good as even a line would be as wide as the wall; where it changes within pixels there would be lines all over.
+  float seen = smoothstep(0.0, 2e-5 * lux, change) * (1.0 - smoothstep(0.3, 0.7, change / min(above - below, 1e3 * lux + 1e-20)));
+  return seen * (1.0 - smoothstep(0.5 * lineWidth - 0.5, 0.5 * lineWidth + 0.5, nearest / change));
 }
 
 void main() {

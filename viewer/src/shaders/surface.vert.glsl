@@ -21,12 +21,13 @@ in vec2 emissionUv;
 in vec3 tint;
 #endif
 
+// Centroids: at the edge of a triangle its middle of a pixel may lie outside, where light would be extrapolated.
 out vec3 vPosition;
-out vec3 vIrradiance;
-out vec3 vIrradianceBefore;
-out vec2 vUv;
-out vec2 vEmissionUv;
-out vec3 vTint;
+centroid out vec3 vIrradiance;
+centroid out vec3 vIrradianceBefore;
+centroid out vec2 vUv;
+centroid out vec2 vEmissionUv;
+centroid out vec3 vTint;
 flat out uint vElement;
 
 void main() {

@@ -12,6 +12,9 @@ use isolux_core::view::{EdgePoints, VertexField};
 /// The corners of an element by their weights.
 const CORNERS: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
+/// A side with less than this share of the other side's light is the inside of something.
+const INSIDE: f32 = 0.01;
+
 /// Draws the elements of a problem.
 pub struct Faces<'a> {
     problem: &'a Problem,
@@ -61,6 +64,20 @@ impl<'a> Faces<'a> {
         if at.back {
             indices[first..].reverse();
         }
+    }
+
+    /// Whether `e` has next to no light while the other side of the same surface has: the inside of a sofa or a wall. Nobody
+    /// sees it there, and leaving it out makes the file smaller.
+    pub fn is_inside(&self, e: u32) -> bool {
+        let mesh = &self.problem.mesh;
+        let triangle = mesh.triangle(e);
+        if !mesh.is_two_sided(triangle) {
+            return false;
+        }
+        let center = mesh.corners(e).iter().sum::<Vec2>() / 3.0;
+        let back = mesh.place(e).back;
+        let light = |back| self.field.irradiance_at(self.problem, triangle, center, back).luminance();
+        light(back) < INSIDE * light(!back)
     }
 
     /// What the scene file says at the given weights of the corners of a place.

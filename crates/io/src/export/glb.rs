@@ -106,9 +106,6 @@ struct Skin {
 /// Floats as a key: equal if all their bits are.
 type Bits<const N: usize> = [u32; N];
 
-/// A side with less than this share of the other side's light is the inside of something.
-const INSIDE: f32 = 0.01;
-
 /// A mesh under construction.
 #[derive(Default)]
 struct Vertices {
@@ -126,7 +123,7 @@ impl Writer<'_> {
         let mut vertices = Vertices::default();
         let mut indices = Vec::with_capacity(3 * elements.len());
         for &e in elements {
-            if self.is_inside(e) {
+            if self.faces.is_inside(e) {
                 continue;
             }
             for place in self.problem.mesh.pieces(e) {
@@ -146,20 +143,6 @@ impl Writer<'_> {
         let material = self.add_material(object, skin);
         let primitive = json!({ "attributes": attributes, "indices": indices, "material": material });
         Ok(self.glb.push("meshes", json!({ "name": object.name, "primitives": [primitive] })))
-    }
-
-    /// Whether `e` has next to no light while the other side of the same surface has: the inside of a sofa or a wall. Nobody
-    /// sees it there, and leaving it out makes the file smaller.
-    fn is_inside(&self, e: u32) -> bool {
-        let mesh = &self.problem.mesh;
-        let triangle = mesh.triangle(e);
-        if !mesh.is_two_sided(triangle) {
-            return false;
-        }
-        let center = mesh.corners(e).iter().sum::<Vec2>() / 3.0;
-        let back = mesh.place(e).back;
-        let light = |back| self.field.irradiance_at(self.problem, triangle, center, back).luminance();
-        light(back) < INSIDE * light(!back)
     }
 
     /// The vertex at the given weights of the corners of a place where an element lies.

@@ -70,7 +70,7 @@ pub fn live_page() -> Result<Vec<u8>, Error> {
 
 /// The surfaces that show `lit`.
 pub fn surfaces(lit: &LitScene) -> Surfaces {
-    Surfaces::new(lit.problem, lit.field(), &lit.solution.groups)
+    Surfaces::new(lit.problem, lit.field(), &lit.solution.groups, lit.draft.is_some())
 }
 
 /// The light of `lit` on `surfaces`, which were made for the same problem. Drafts are packed in a hurry.

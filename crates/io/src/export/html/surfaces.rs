@@ -41,8 +41,9 @@ struct Vertex {
 type Key = (u32, [u32; 7]);
 
 impl Surfaces {
-    /// Those of `problem`, on the vertices of `field`; lamps are at the factors 1 of the `groups`.
-    pub fn new(problem: &Problem, field: &VertexField, groups: &[GroupLight]) -> Surfaces {
+    /// Those of `problem`, on the vertices of `field`; lamps are at the factors 1 of the `groups`. The dark insides of things are left out unless
+    /// `all` is asked for, as in a draft, where much is dark by chance.
+    pub fn new(problem: &Problem, field: &VertexField, groups: &[GroupLight], all: bool) -> Surfaces {
         let faces = Faces::new(problem, field);
         let elements_of = elements_by_object(problem);
         let batches = batches(problem, groups);
@@ -55,7 +56,8 @@ impl Surfaces {
         };
         for batch in &batches {
             let mut known = HashMap::new();
-            for &e in batch.objects.iter().flat_map(|&object| &elements_of[object as usize]) {
+            let elements = batch.objects.iter().flat_map(|&object| &elements_of[object as usize]);
+            for &e in elements.filter(|&&e| all || !faces.is_inside(e)) {
                 surfaces.add_element(problem, field, &faces, batch, e, &mut known);
             }
             surfaces.ends.push(surfaces.elements.len());
