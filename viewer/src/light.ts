@@ -72,9 +72,14 @@ export class Light {
   readonly factors: Rgb[];
   private readonly groups: Group[];
 
-  constructor(part: Part<LightHeader>) {
+  /** Light that has no numbers of its own is that of `other`, with the lamps dimmed otherwise. */
+  constructor(part: Part<LightHeader>, other?: Light) {
     this.header = part.header;
     this.factors = part.header.groups.map((group) => [...group.factor]);
+    if (other && !part.has("irradiance 0")) {
+      this.groups = other.groups;
+      return;
+    }
     this.groups = part.header.groups.map(({ freedom }, k) => ({
       freedom: freedom ?? NaN,
       vertices: part.floats(`vertex irradiance ${k}`),

@@ -46,22 +46,28 @@ export class Live {
     }
   }
 
-  /** Gives every new light to `show` until the solve is done. */
+  /** Gives every new light to `show` until the solve is done, or its server is gone. */
   async follow(show: (light: Light) => void): Promise<void> {
-    try {
-      for (;;) {
-        const { revision, finished, words } = await progress();
-        if (revision !== this.revision) {
-          show(new Light(await part<LightHeader>("/light")));
-          this.revision = revision;
-        }
-        this.say(words, finished);
-        if (finished) return;
-        await pause();
+    for (;;) {
+      const news = await this.news().catch(() => undefined);
+      if (!news) {
+        this.say("the solve has ended; this is the last light it sent", true);
+        return;
       }
-    } catch {
-      this.say("the solve has ended; this is the last light it sent", true);
+      if (news.light) show(news.light);
+      this.say(news.words, news.finished);
+      if (news.finished) return;
+      await pause();
     }
+  }
+
+  /** How far the solve is, and its light if it is new. */
+  private async news(): Promise<Progress & { light?: Light }> {
+    const now = await progress();
+    if (now.revision === this.revision) return now;
+    const light = new Light(await part<LightHeader>("/light"));
+    this.revision = now.revision;
+    return { ...now, light };
   }
 
   private say(words: string, finished: boolean): void {

@@ -15,14 +15,14 @@ import { screenshot } from "./screenshot";
 import { Surfaces, type SurfacesHeader } from "./surfaces";
 import { type Shown, Viewer } from "./viewer";
 
-/** A solution that is written into the page. */
-async function shown(which: "" | "-before", other?: Surfaces): Promise<Shown | undefined> {
+/** A solution that is written into the page; what it has in common with the `other` is written once. */
+async function shown(which: "" | "-before", other?: Shown): Promise<Shown | undefined> {
   const light = await embedded<LightHeader>(`light${which}`);
   if (!light) return undefined;
   const part = await embedded<SurfacesHeader>(`surfaces${which}`);
-  const surfaces = part ? new Surfaces(part) : other;
+  const surfaces = part ? new Surfaces(part) : other?.surfaces;
   if (!surfaces) throw new Damaged("it has light, but nothing to fall on");
-  return { surfaces, light: new Light(light) };
+  return { surfaces, light: new Light(light, other?.light) };
 }
 
 async function start(): Promise<void> {
@@ -30,7 +30,7 @@ async function start(): Promise<void> {
   const live = isLive ? new Live() : undefined;
   const after = live ? await live.first() : await shown("");
   if (!after) throw new Damaged("there is no light in it");
-  const before = compared && (await shown("-before", after.surfaces));
+  const before = compared && (await shown("-before", after));
 
   const canvas = byId<HTMLCanvasElement>("picture");
   const viewer = await Viewer.make(canvas, after, before, compared?.same_elements);
@@ -40,7 +40,7 @@ async function start(): Promise<void> {
   const relight = () => {
     viewer.relight(viewer.after);
     report(viewer.after);
-    reading.write();
+    reading.relit();
   };
   const groups = new Groups(viewer.after, relight);
   const save = () => void screenshot(viewer, legend, after.surfaces.header.name);

@@ -34,6 +34,9 @@ export class ReadingCard {
       const found = viewer.pick(event.offsetX, event.offsetY);
       if (found && !viewer.camera.isWalking) viewer.camera.lookAt(found.position);
     });
+    canvas.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") this.pick(canvas.clientWidth / 2, canvas.clientHeight / 2);
+    });
     byId("reading-close").addEventListener("click", () => this.clear());
     viewer.drawn.push(() => this.place());
   }
@@ -51,8 +54,19 @@ export class ReadingCard {
     this.place();
   }
 
-  /** Writes the card anew: after a click, or after the light has changed. */
-  write(): void {
+  /** Reads the same point again, after the light has changed. */
+  relit(): void {
+    if (!this.picked) return;
+    const { x, y } = this.picked.position.clone().project(this.viewer.camera.camera);
+    const found = this.viewer.pick((0.5 + 0.5 * x) * this.canvas.clientWidth, (0.5 - 0.5 * y) * this.canvas.clientHeight);
+    // If it is out of sight by now, what is interpolated there is not known any more; the element's value is.
+    const isSame = found?.element === this.picked.element && found.drawing === this.picked.drawing;
+    this.picked = { ...this.picked, irradiance: isSame ? found.irradiance : [NaN, NaN, NaN] };
+    this.write();
+  }
+
+  /** Writes the card. */
+  private write(): void {
     this.card.hidden = !this.picked;
     if (!this.picked) return;
     const { drawing, element: e, position, irradiance } = this.picked;
@@ -65,7 +79,8 @@ export class ReadingCard {
       ? "this element; how sure that is, is not known"
       : "this element, with 95 % confidence";
     const rows: [string, string][] = [];
-    rows.push(["Here, between elements", `${significant(luminance(...irradiance), 4)} lx`]);
+    const here = luminance(...irradiance);
+    if (!Number.isNaN(here)) rows.push(["Here, between elements", `${significant(here, 4)} lx`]);
     rows.push(...this.compared(drawing, e));
     rows.push(
       ["Object", surfaces.header.objects[object] || `number ${object}`],

@@ -63,7 +63,7 @@ impl LiveArguments {
         if !quiet {
             display.say(&format!("the solve is shown at {address}, to this machine only"));
         }
-        if !self.no_open && !quiet {
+        if !self.no_open {
             open_in_browser(&address, display);
         }
         let wait = Duration::ZERO;

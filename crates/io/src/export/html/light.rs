@@ -17,7 +17,7 @@ const CONFIDENCE: f64 = 0.95;
 /// Degrees of freedom for which the page is told Student's t.
 const FREEDOMS: u32 = 60;
 
-/// The part of a page with the light on `surfaces`, packed.
+/// The part of a page with the light on `surfaces`, packed; with the factors of the groups alone, if their light `is_known`.
 ///
 /// # Errors
 /// [`Error::Core`] for a camera that is not there.
@@ -25,6 +25,7 @@ pub fn part(
     lit: &LitScene,
     surfaces: &Surfaces,
     options: &ExportOptions,
+    is_known: bool,
     packing: Compression,
 ) -> Result<Vec<u8>, Error> {
     let LitScene { problem, solution, .. } = lit;
@@ -43,6 +44,9 @@ pub fn part(
     }
     let one = |part: &isolux_core::solution::GroupLight| group(&part.group.name, part.factor, &part.solution);
     part.set("groups", solution.groups.iter().map(one).collect());
+    if is_known {
+        return part.finish(packing);
+    }
     let mut field = None;
     for (k, group) in solution.groups.iter().enumerate() {
         let alone = &group.solution;

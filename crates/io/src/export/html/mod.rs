@@ -16,7 +16,8 @@ use crate::Error;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
-use isolux_core::Problem;
+use isolux_core::solution::GroupLight;
+use isolux_core::{Problem, Solution};
 use serde_json::{Value, json};
 
 /// The built page; empty if there was none when this program was built.
@@ -48,7 +49,8 @@ pub fn write_compared(
     let (surfaces, surfaces_before) = (surfaces(after), surfaces(before));
     let (part, part_before) = (surfaces.part(after.problem)?, surfaces_before.part(before.problem)?);
     let light = light_part(after, &surfaces, options)?;
-    let light_before = light_part(before, &surfaces_before, options)?;
+    let is_mixture = part == part_before && is_mixture_of_same(&after.solution, &before.solution);
+    let light_before = light::part(before, &surfaces_before, options, is_mixture, Compression::default())?;
     let about = json!({ "compared": {
         "names": [name, name_before],
         "same_elements": has_same_elements(after.problem, before.problem),
@@ -79,7 +81,7 @@ pub fn surfaces(lit: &LitScene) -> Surfaces {
 /// [`Error::Core`] for a camera that is not there.
 pub fn light_part(lit: &LitScene, surfaces: &Surfaces, options: &ExportOptions) -> Result<Vec<u8>, Error> {
     let packing = if lit.draft.is_some() { Compression::fast() } else { Compression::default() };
-    light::part(lit, surfaces, options, packing)
+    light::part(lit, surfaces, options, false, packing)
 }
 
 /// The built page, with nothing to show.
@@ -109,6 +111,12 @@ fn page(about: &Value, parts: &[(&str, &[u8])]) -> Result<Vec<u8>, Error> {
         return Err(super::cannot_encode("html")(what));
     }
     Ok(page.into_bytes())
+}
+
+/// Whether both are made of the light of the same groups of lamps, each with factors of its own.
+fn is_mixture_of_same(one: &Solution, other: &Solution) -> bool {
+    let same = |(a, b): (&GroupLight, &GroupLight)| a.group == b.group && a.solution == b.solution;
+    !one.groups.is_empty() && one.groups.len() == other.groups.len() && one.groups.iter().zip(&other.groups).all(same)
 }
 
 /// Whether values of the elements of one can be compared with those of the other: same triangles, cut alike.

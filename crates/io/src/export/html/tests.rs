@@ -10,19 +10,19 @@ use isolux_core::{Problem, Solution};
 use std::io::Read;
 
 /// A part, read as the page reads it.
-struct Read1 {
+struct Unpacked {
     header: Value,
     body: Vec<u8>,
 }
 
-impl Read1 {
-    fn new(packed: &[u8]) -> Read1 {
+impl Unpacked {
+    fn new(packed: &[u8]) -> Unpacked {
         let mut bytes = Vec::new();
         ZlibDecoder::new(packed).read_to_end(&mut bytes).unwrap();
         assert_eq!(&bytes[..8], b"isoluxv1");
         let length = u32::from_le_bytes(bytes[8..12].try_into().unwrap()) as usize;
         let header = serde_json::from_slice(&bytes[12..12 + length]).unwrap();
-        Read1 { header, body: bytes[12 + length..].to_vec() }
+        Unpacked { header, body: bytes[12 + length..].to_vec() }
     }
 
     fn bytes(&self, name: &str) -> Vec<u8> {
@@ -53,11 +53,11 @@ impl Read1 {
     }
 }
 
-fn parts(problem: &Problem, solution: &Solution) -> (Read1, Read1) {
+fn parts(problem: &Problem, solution: &Solution) -> (Unpacked, Unpacked) {
     let lit = LitScene::smoothed(problem, solution, Smoothing::None);
     let shown = Surfaces::new(problem, lit.field(), &solution.groups, true);
     let light = light_part(&lit, &shown, &ExportOptions::default()).unwrap();
-    (Read1::new(&shown.part(problem).unwrap()), Read1::new(&light))
+    (Unpacked::new(&shown.part(problem).unwrap()), Unpacked::new(&light))
 }
 
 #[test]
@@ -132,6 +132,26 @@ fn lamps_that_are_dimmed_change_no_surface() {
     assert_eq!(light.floats("irradiance 1"), dimmed.floats("irradiance 1"));
     let groups: Vec<&Value> = surfaces.header["batches"].as_array().unwrap().iter().map(|b| &b["group"]).collect();
     assert!(groups.contains(&&json!(0)) && groups.contains(&&json!(1)) && groups.contains(&&Value::Null));
+}
+
+#[test]
+fn mixtures_of_the_same_light_have_it_once() {
+    let ((bright, light), (dim, dimmed)) = (grouped(1.0), grouped(0.25));
+    // An element without a known error is like no other, not even itself.
+    let known = |solution: &Solution| {
+        let mut solution = solution.clone();
+        solution.groups.iter_mut().for_each(|part| part.solution.std_error[3] = Rgb::BLACK);
+        solution
+    };
+    let (light, dimmed) = (known(&light), known(&dimmed));
+    assert!(is_mixture_of_same(&light, &dimmed) && has_same_elements(&bright, &dim));
+    let lit = LitScene::smoothed(&dim, &dimmed, Smoothing::None);
+    let part = light::part(&lit, &surfaces(&lit), &ExportOptions::default(), true, Compression::fast()).unwrap();
+    let read = Unpacked::new(&part);
+    assert!(read.body.is_empty() && read.header["groups"][1]["factor"] == json!([0.25, 0.25, 0.25]));
+    let mut other = dimmed.clone();
+    other.groups[0].solution.irradiance[5] = Rgb::WHITE;
+    assert!(!is_mixture_of_same(&light, &other));
 }
 
 #[test]
