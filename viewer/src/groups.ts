@@ -15,6 +15,7 @@ interface Setting {
 
 export class Groups {
   private settings: Setting[] = [];
+  private isWaiting = false;
   private readonly list = byId("groups-list");
 
   /** Sliders for the groups of `drawing`; `changed` is called when they are moved. None, and no trace of them, if it has no groups. */
@@ -30,9 +31,9 @@ export class Groups {
     this.show();
   }
 
-  /** Gives new light the factors that were set. */
+  /** Gives the light, which may be new, the factors that were set. */
   keep(): void {
-    this.settings.forEach((setting, g) => this.give(g, setting));
+    this.settings.forEach(({ level, filter }, g) => (this.drawing.light.factors[g] = filter.map((v) => v * level) as Rgb));
   }
 
   private asSolved(): Setting[] {
@@ -57,31 +58,23 @@ export class Groups {
     slider.addEventListener("input", () => {
       setting.level = Number(slider.value);
       value.textContent = setting.level.toFixed(2);
-      this.give(g, setting);
       this.apply();
     });
     filter.addEventListener("input", () => {
       setting.filter = fromHex(filter.value);
-      this.give(g, setting);
       this.apply();
     });
     const label = make("label", { htmlFor: id, textContent: name, title: name });
     return make("div", { className: "group" }, label, slider, value, filter);
   }
 
-  private give(g: number, { level, filter }: Setting): void {
-    this.drawing.light.factors[g] = filter.map((v) => v * level) as Rgb;
-  }
-
-  private waiting = false;
-
   /** Lights the picture anew, once a frame however often a slider moves. */
   private apply(): void {
-    this.settings.forEach((setting, g) => this.give(g, setting));
-    if (this.waiting) return;
-    this.waiting = true;
+    if (this.isWaiting) return;
+    this.isWaiting = true;
     requestAnimationFrame(() => {
-      this.waiting = false;
+      this.isWaiting = false;
+      this.keep();
       this.changed();
     });
   }

@@ -90,7 +90,7 @@ export class Light {
 
   /** Whether the lamps are as in the file. */
   get isAsSolved(): boolean {
-    return this.header.groups.every(({ factor }, g) => factor.every((v, c) => v === this.factors[g]![c]));
+    return this.header.groups.every(({ factor }, g) => factor.every((v, c) => Math.abs(v - this.factors[g]![c]!) <= 1e-6 * v));
   }
 
   /** Irradiance [lux] at all vertices. */

@@ -49,6 +49,9 @@ async function start(): Promise<void> {
   viewer.draw();
   byId("loading").hidden = true;
   document.body.classList.add("ready");
+  canvas.addEventListener("webglcontextlost", () => {
+    fail("The graphics card has given up", "Load the page again. If it happens often, solve with fewer --elements.");
+  });
   // For tests, and for the curious.
   Object.assign(window, { isolux: { viewer, reading } });
   void live?.follow((light) => {
@@ -63,7 +66,9 @@ function hasWebGl(): boolean {
   return document.createElement("canvas").getContext("webgl2") !== null;
 }
 
-if (!hasWebGl()) {
+if (typeof DecompressionStream === "undefined") {
+  fail("This browser is too old", "The page needs one of 2023 or later.");
+} else if (!hasWebGl()) {
   fail("This browser cannot draw in three dimensions", "The page needs WebGL 2. Another browser, or one with its hardware acceleration "
     + "switched on, will show it. Pictures and numbers need none: isolux render SOLUTION -o picture.png -o numbers.csv");
 } else {

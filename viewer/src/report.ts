@@ -20,8 +20,9 @@ export function report(drawing: Drawing): void {
     error ? error.std_error * studentsT(header.students_t, error.freedom) : NaN;
 
   const rows: [string, string][] = [["Method", summary.method]];
-  if (summary.mean !== null) rows.push(["Mean irradiance", `${withMargin(summary.mean, margin(summary.mean_error))} lx`]);
-  if (summary.rms_error_estimate !== null) rows.push(["RMS error, expected", `${significant(100 * summary.rms_error_estimate, 3)} %`]);
+  const { isAsSolved } = drawing.light;
+  if (isAsSolved && summary.mean !== null) rows.push(["Mean irradiance", `${withMargin(summary.mean, margin(summary.mean_error))} lx`]);
+  if (isAsSolved && summary.rms_error_estimate !== null) rows.push(["RMS error, expected", `${significant(100 * summary.rms_error_estimate, 3)} %`]);
   rows.push(
     ["Replicates", String(summary.replicates)],
     ["Seed", String(summary.seed)],
