@@ -1,6 +1,8 @@
 # Everything a fresh machine with cargo needs.
 #   make demo    build isolux, light a room, leave picture, model and report in out/
 #   make test    every test
+#   make viewer  the page for browsers, which isolux then writes; needs npm. Without it all else is built
+#   make test-viewer   tests of the page, in Chromium if it is there
 #   make bench   speed of the ray kernel and of global lines, into docs/performance.md
 #                EMBREE=1 puts Embree beside it, which needs Debian's libembree-dev (apt-get install libembree-dev)
 #   make studies                  the nine published experiments and the study of speed in full: two hours
@@ -15,22 +17,43 @@ ISOLUX = target/release/isolux
 
 STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count speed
 
-.PHONY: demo test bench lint build studies growth study-reference-rooms study-methods study-smoothing study-mesh study-clusters
+.PHONY: demo test bench lint build viewer test-viewer studies growth study-reference-rooms study-methods study-smoothing study-mesh study-clusters
 
-build:
+build: viewer
 	cargo build --release --locked
+
+# The page is built anew only if something of it has changed.
+PAGE = viewer/dist/viewer.html
+
+viewer:
+	@if command -v npm > /dev/null; then $(MAKE) --no-print-directory $(PAGE); \
+	else echo "npm is not installed: isolux is built without the viewer, and cannot write .html"; fi
+
+$(PAGE): $(wildcard viewer/src/* viewer/src/shaders/*) viewer/build.mjs viewer/node_modules/.package-lock.json
+	cd viewer && npm run --silent build
+
+viewer/node_modules/.package-lock.json: viewer/package.json viewer/package-lock.json
+	cd viewer && PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm ci --no-audit --no-fund
+	@touch $@
+
+test-viewer: build
+	@bash viewer/test.sh
 
 demo: build
 	@mkdir -p out
 	$(ISOLUX) solve office --elements 200k --time 45 --objects 8 -o out/office.png -o out/office.glb -o out/office.json -o out/office.isolux
+	@if [ -e $(PAGE) ]; then $(ISOLUX) view out/office.isolux -o out/office.html --quiet; fi
 	@echo
 	@echo "out/office.png     the picture"
 	@echo "out/office.glb     the lit model, for any viewer of glTF"
 	@echo "out/office.json    the report: totals, balance, light on each object"
+	@if [ -e $(PAGE) ]; then echo "out/office.html    the room to walk about in and read lux off, in any browser"; \
+	else echo "(no page for browsers: npm is not installed)"; fi
 	@echo "out/office.isolux  the solution; look again with: $(ISOLUX) render out/office.isolux -o out/again.png"
 
-test:
+test: viewer
 	cargo test --release --locked --workspace
+	$(MAKE) --no-print-directory test-viewer
 
 bench:
 	BENCH_REPORT=$(CURDIR)/docs/performance.md BENCH_DATE=$$(date +%F) CRITERION_HOME=$(CURDIR)/target/criterion \

@@ -76,9 +76,9 @@ impl UnitArguments {
     }
 }
 
-/// How pictures (`.png`, `.exr`) are taken; camera and exposure concern `.glb`, too.
+/// How pictures (`.png`, `.exr`) are taken; camera and exposure concern `.glb` and `.html`, too.
 #[derive(Clone, Debug, clap::Args)]
-#[command(next_help_heading = "Pictures (.png .exr .glb)")]
+#[command(next_help_heading = "Pictures (.png .exr .glb .html)")]
 pub struct PictureArguments {
     /// The camera, by its name or its number from 0 [default: the first, or a view of the whole scene]
     #[arg(long, value_name = "CAMERA")]
@@ -96,14 +96,28 @@ pub struct PictureArguments {
     #[arg(long, value_name = "N", default_value = "16")]
     samples: NonZeroU32,
 
+    #[command(flatten)]
+    look: LookArguments,
+}
+
+/// How the light is shown, whatever shows it.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct LookArguments {
     /// Exposure in stops: luminances in cd/m² are multiplied by 2^EV, so a bright room takes about -7 [default: metered]
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = parse_exposure)]
     exposure: Option<f32>,
 
-    /// Where neighbouring elements even each other out as far as their error bars allow: in pictures (.png .exr .glb), in all
+    /// Where neighbouring elements even each other out as far as their error bars allow: in pictures (.png .exr .glb .html), in all
     /// files but .isolux, or in none. The flux on every object is kept
     #[arg(long, value_name = "WHERE", default_value = "pictures", value_parser = parse_smoothing)]
     smooth: Smoothing,
+}
+
+impl LookArguments {
+    /// What the writers are told, for a scene seen through `camera`.
+    pub fn options(self, camera: Option<String>) -> ExportOptions {
+        ExportOptions { camera, exposure: self.exposure, smoothing: self.smooth, ..ExportOptions::default() }
+    }
 }
 
 fn parse_smoothing(text: &str) -> Result<Smoothing, String> {
@@ -120,13 +134,10 @@ impl PictureArguments {
     /// What the writers are told.
     pub fn options(&self) -> ExportOptions {
         ExportOptions {
-            camera: self.camera.clone(),
             width: self.width.get(),
             height: self.height.map(NonZeroU32::get),
             samples: self.samples.get(),
-            exposure: self.exposure,
-            smoothing: self.smooth,
-            ..ExportOptions::default()
+            ..self.look.options(self.camera.clone())
         }
     }
 
@@ -135,19 +146,27 @@ impl PictureArguments {
     /// # Errors
     /// A failure that names the nearest camera.
     pub fn check_camera(&self, scene: &Scene) -> Result<(), Failure> {
-        let Some(wanted) = &self.camera else { return Ok(()) };
-        let named = scene.cameras.iter().any(|camera| camera.name == *wanted);
-        let numbered = wanted.parse().is_ok_and(|number: usize| number < scene.cameras.len());
-        if named || numbered {
-            return Ok(());
-        }
-        if scene.cameras.is_empty() {
-            return Err(Failure::usage(format!("the scene has no camera, so none called '{wanted}'"))
-                .with_help("leave --camera out for a view of the whole scene"));
-        }
-        let cameras = scene.cameras.iter().map(|camera| camera.name.as_str());
-        Err(Failure::from(Error::unknown_name("camera", wanted, cameras)).with_help("'isolux check' lists the cameras"))
+        check_camera(self.camera.as_deref(), scene)
     }
+}
+
+/// Whether `scene` has the camera `wanted`, if one is.
+///
+/// # Errors
+/// A failure that names the nearest camera.
+pub fn check_camera(wanted: Option<&str>, scene: &Scene) -> Result<(), Failure> {
+    let Some(wanted) = wanted else { return Ok(()) };
+    let named = scene.cameras.iter().any(|camera| camera.name == *wanted);
+    let numbered = wanted.parse().is_ok_and(|number: usize| number < scene.cameras.len());
+    if named || numbered {
+        return Ok(());
+    }
+    if scene.cameras.is_empty() {
+        return Err(Failure::usage(format!("the scene has no camera, so none called '{wanted}'"))
+            .with_help("leave --camera out for a view of the whole scene"));
+    }
+    let cameras = scene.cameras.iter().map(|camera| camera.name.as_str());
+    Err(Failure::from(Error::unknown_name("camera", wanted, cameras)).with_help("'isolux check' lists the cameras"))
 }
 
 /// How many threads.

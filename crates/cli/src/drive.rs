@@ -1,9 +1,10 @@
-//! Drives a solver: shows how far it is, writes drafts and checkpoints, and ends it in time, or when somebody asks for that.
+//! Drives a solver: shows how far it is, on a page too, writes drafts and checkpoints, and ends it in time, or when somebody asks for that.
 
 use crate::checkpoints::Checkpoints;
 use crate::drafts::Drafts;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::live::Live;
 use crate::progress::{Display, Watch};
 use crate::summary::Ended;
 use isolux_core::run;
@@ -18,6 +19,7 @@ pub struct Drive<'a, 'b> {
     /// Time that is left, if it is limited.
     pub left: Option<Duration>,
     pub drafts: Option<Drafts<'a>>,
+    pub live: Option<&'a mut Live>,
     pub checkpoints: Option<&'a mut Checkpoints<'b>>,
     pub interrupt: &'a Interrupt,
 }
@@ -25,7 +27,7 @@ pub struct Drive<'a, 'b> {
 impl Drive<'_, '_> {
     /// Runs `solver` to its end, or until it is stopped; the best solution it has, and why it ended. The last checkpoint is written.
     pub fn run(self, solver: &mut dyn Solver, problem: &Problem, display: &mut Display) -> (Solution, Ended) {
-        let Drive { start, left, mut drafts, mut checkpoints, interrupt } = self;
+        let Drive { start, left, mut drafts, mut live, mut checkpoints, interrupt } = self;
         let mut watch = Watch::new(display, start, left);
         let mut ended = why_to_end(start, left, interrupt);
         let mut solution = match ended {
@@ -33,6 +35,9 @@ impl Drive<'_, '_> {
                 watch.show(&solver.progress());
                 if let Some(drafts) = drafts.as_mut().filter(|_| !interrupt.is_asked()) {
                     drafts.write(solver, problem);
+                }
+                if let Some(live) = live.as_mut().filter(|_| !interrupt.is_asked()) {
+                    live.show(solver, problem);
                 }
                 if let Some(checkpoints) = &mut checkpoints {
                     tell(&watch, checkpoints.write_in_time(solver, problem));

@@ -18,6 +18,7 @@ mod input;
 mod interrupt;
 mod light_groups;
 mod list;
+mod live;
 mod merge;
 mod mesh;
 mod method;
@@ -29,11 +30,13 @@ mod render;
 mod report;
 mod resume;
 mod scene;
+mod server;
 mod solve;
 mod solver;
 mod study;
 mod summary;
 mod terminal;
+mod view;
 mod writing;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -45,6 +48,7 @@ Examples:
   isolux solve cornell-box -o cornell.png         light a built-in room and take a picture
   isolux solve room.glb -o lit.glb -o lit.isolux  a lit model for any viewer, and the solution
   isolux render lit.isolux -o view.png            another picture, without solving again
+  isolux view lit.isolux                          walk about in it, in the browser
   isolux bake lit.isolux -o room-lightmap.glb     light in a texture, for engines
   isolux merge a.isolux b.isolux -o both.isolux   one better solution of two seeds
   isolux mix lit.isolux --set Lamp=0.3 -o dim.png lamps dimmed, after solve --light-groups
@@ -72,6 +76,7 @@ struct Cli {
 enum Command {
     Solve(Box<solve::Solve>),
     Render(render::Render),
+    View(view::View),
     Bake(bake::Bake),
     Check(check::Check),
     Compare(compare::Compare),
@@ -101,6 +106,7 @@ fn execute(command: Option<Command>) -> Result<u8, Failure> {
         None => terminal::print(&Cli::command().render_help().ansi().to_string()).map(|()| 0),
         Some(Command::Solve(solve)) => solve.run(),
         Some(Command::Render(render)) => render.run(),
+        Some(Command::View(view)) => view.run(),
         Some(Command::Bake(bake)) => bake.run(),
         Some(Command::Check(check)) => check.run(),
         Some(Command::Compare(compare)) => compare.run(),

@@ -7,6 +7,7 @@ use crate::drafts::Drafts;
 use crate::drive::Drive;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
+use crate::live::LiveArguments;
 use crate::mesh::{Limits, MeshArguments, Meshed};
 use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
@@ -38,6 +39,7 @@ Examples:
   isolux solve room.glb --error 1% --error-of object:Floor --time 10min -o lit.csv
   isolux solve room.glb --elements 1e6 --time 10min -o lit.isolux
   isolux solve room.glb --time 1min --every 5s -o lit.png
+  isolux solve room.glb --time 5min --live -o lit.isolux
   isolux solve room.glb --rays 1G --checkpoint room.checkpoint -o lit.isolux
   isolux solve --resume room.checkpoint -o lit.isolux
   isolux solve --resume room.checkpoint --rays 4G -o better.isolux
@@ -117,6 +119,9 @@ pub struct Solve {
     #[command(flatten, next_help_heading = "Stop and resume")]
     resume: ResumeArguments,
 
+    #[command(flatten, next_help_heading = "Watch")]
+    live: LiveArguments,
+
     #[command(flatten)]
     picture: PictureArguments,
 
@@ -186,6 +191,7 @@ impl Solve {
         interrupt: &Interrupt,
         display: &mut Display,
     ) -> Result<u8, Failure> {
+        let mut live = self.live.serve(self.picture.options(), self.quiet, display)?;
         let Checkpoint { problem, mut solver, clock } = match &self.resume.resume {
             Some(file) => self.resumed(file, display)?,
             None => self.begun(display)?,
@@ -198,6 +204,7 @@ impl Solve {
             start,
             left: time_left(clock),
             drafts: self.every.map(|every| Drafts::new(outputs, self.picture.options(), every, start)),
+            live: live.as_mut(),
             checkpoints: checkpoints.as_mut(),
             interrupt,
         };
@@ -207,6 +214,10 @@ impl Solve {
         drop(solver);
 
         let written = outputs.write(&problem, &solution, &self.picture.options(), display, interrupt);
+        if let (Ok(_), Some(live)) = (&written, &mut live) {
+            display.stage("showing the result");
+            live.finish(&problem, &solution)?;
+        }
         display.clear();
         if let Some(checkpoint) = checkpoints.as_ref().and_then(Checkpoints::beside) {
             keep_or_remove(checkpoint, written.is_ok(), interrupt);
@@ -216,7 +227,11 @@ impl Solve {
         let summary =
             Summary { problem: &problem, solution: &solution, asked, bias, ended, seconds, threads, outputs: &written };
         self.report(&summary)?;
-        Ok(if interrupt.is_asked() { INTERRUPTED } else { 0 })
+        if interrupt.is_asked() {
+            return Ok(INTERRUPTED);
+        }
+        live.iter().for_each(|live| live.stay(interrupt));
+        Ok(0)
     }
 
     /// The run in a checkpoint, with more to do if more is asked for.

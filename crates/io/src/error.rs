@@ -16,6 +16,12 @@ pub enum Error {
     #[error("{path}: unknown file type; {known}", path = path.display())]
     UnknownFormat { path: PathBuf, known: String },
 
+    /// A page for browsers is asked for, and there is none to put the scene into.
+    #[error(
+        "pages cannot be written: this isolux was built without the viewer; 'make viewer' makes it (with npm), then build isolux again"
+    )]
+    NoViewer,
+
     /// What the file says makes no problem that can be solved.
     #[error(transparent)]
     Core(#[from] isolux_core::Error),

@@ -24,6 +24,7 @@ pub mod tone;
 pub mod vertex_field;
 pub(crate) mod vertices;
 
+pub use default_view::camera as default_camera;
 pub use picture::{Picture, ViewOptions, exposure, render, render_field};
 pub use seams::EdgePoints;
 pub use smooth::smooth;

@@ -6,6 +6,7 @@
 //! of things. The
 //! numbers themselves are in the attributes `_IRRADIANCE` and `_STD_ERROR` [lux], linear Rec. 709; `asset.extras` says so in the file.
 
+use super::faces::{Faces, elements_by_object, mean};
 use super::glb_container::GlbBuilder;
 use super::image::encode_png;
 use super::picture::view_options;
@@ -17,7 +18,7 @@ use isolux_core::math::Rgb;
 use isolux_core::math::color::linear_to_srgb;
 use isolux_core::mesh::Place;
 use isolux_core::scene::{Camera, Image, Object, Projection, Texture, Wrap};
-use isolux_core::view::{self, EdgePoints, Exposure, VertexField};
+use isolux_core::view::{self, Exposure, VertexField};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::f32::consts::FRAC_1_PI;
@@ -37,8 +38,8 @@ fn write_field(
     exposure: Exposure,
     smoothing: Smoothing,
 ) -> Result<Vec<u8>, Error> {
-    let edge_points = field.edge_points(problem);
-    let mut writer = Writer { problem, field, exposure, edge_points, glb: GlbBuilder::new(), images: HashMap::new() };
+    let faces = Faces::new(problem, field);
+    let mut writer = Writer { problem, field, exposure, faces, glb: GlbBuilder::new(), images: HashMap::new() };
     writer.glb.set("asset", asset(exposure, smoothing));
     writer.glb.use_extension("KHR_materials_unlit");
     let mut nodes = Vec::new();
@@ -74,21 +75,11 @@ fn asset(exposure: Exposure, smoothing: Smoothing) -> Value {
     })
 }
 
-/// Numbers of the elements of every object, in ascending order.
-fn elements_by_object(problem: &Problem) -> Vec<Vec<u32>> {
-    let mut elements = vec![Vec::new(); problem.scene.objects.len()];
-    for e in problem.mesh.elements() {
-        let triangle = &problem.scene.triangles[problem.mesh.triangle(e) as usize];
-        elements[triangle.object as usize].push(e);
-    }
-    elements
-}
-
 struct Writer<'a> {
     problem: &'a Problem,
     field: &'a VertexField,
     exposure: Exposure,
-    edge_points: EdgePoints,
+    faces: Faces<'a>,
     glb: GlbBuilder,
     /// Embedded images by their number in the scene.
     images: HashMap<u32, EmbeddedImage>,
@@ -116,12 +107,6 @@ struct Skin {
 /// Floats as a key: equal if all their bits are.
 type Bits<const N: usize> = [u32; N];
 
-/// The corners of an element by their weights.
-const CORNERS: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
-
-/// A side with less than this share of the other side's light is the inside of something.
-const INSIDE: f32 = 0.01;
-
 /// A mesh under construction.
 #[derive(Default)]
 struct Vertices {
@@ -140,15 +125,12 @@ impl Writer<'_> {
         let mut vertices = Vertices::default();
         let mut indices = Vec::with_capacity(3 * elements.len());
         for &e in elements {
-            if self.is_inside(e) {
+            if self.faces.is_inside(e) {
                 continue;
             }
             for place in self.problem.mesh.pieces(e) {
-                let first = indices.len();
-                self.add_faces(place, skin, &mut vertices, &mut indices);
-                if place.back {
-                    indices[first..].reverse();
-                }
+                let add = |weights, position| self.add_vertex(place, weights, position, skin, &mut vertices);
+                self.faces.draw(place, add, &mut indices);
             }
         }
         let mut attributes = json!({
@@ -168,70 +150,15 @@ impl Writer<'_> {
         Ok(self.glb.push("meshes", json!({ "name": object.name, "primitives": [primitive] })))
     }
 
-    /// Whether `e` has next to no light while the other side of the same surface has: the inside of a sofa or a wall. Nobody
-    /// sees it there, and leaving it out makes the file smaller.
-    fn is_inside(&self, e: u32) -> bool {
-        let mesh = &self.problem.mesh;
-        let triangle = mesh.triangle(e);
-        if !mesh.is_two_sided(triangle) {
-            return false;
-        }
-        let center = mesh.corners(e).iter().sum::<Vec2>() / 3.0;
-        let back = mesh.place(e).back;
-        let light = |back| self.field.irradiance_at(self.problem, triangle, center, back).luminance();
-        light(back) < INSIDE * light(!back)
-    }
-
-    /// Appends the triangles at a place where an element lies, in the orientation of its front: one, or a fan about its centre if
-    /// vertices of its neighbours lie on its edges, so that no pinholes show there.
-    fn add_faces(&self, at: Place, skin: Option<Skin>, vertices: &mut Vertices, indices: &mut Vec<u32>) {
-        let shared = self.field.vertices_at(self.problem, at);
-        let corners = shared.map(|v| self.field.place(v));
-        let mut outline = Vec::with_capacity(3);
-        for k in 0..3 {
-            let (from, to) = (CORNERS[k], CORNERS[(k + 1) % 3]);
-            outline.push((from, corners[k]));
-            let between = self.edge_points.between(corners[k], corners[(k + 1) % 3]);
-            outline.extend(between.into_iter().map(|(t, place)| (from.lerp(to, t), place)));
-        }
-        let corner = |(weights, place): &(Vec3, u32)| (*weights, self.field.position_of_place(*place));
-        let mut add = |(weights, position)| self.add_vertex(at, shared, weights, position, skin, vertices);
-        let outline: Vec<(Vec3, Vec3)> = outline.iter().map(corner).collect();
-        let numbers: Vec<u32> = outline.iter().map(|point| add(*point)).collect();
-        if let [a, b, c] = numbers[..] {
-            indices.extend([a, b, c]);
-        } else {
-            let [a, b, c] = shared.map(|v| self.field.position(v));
-            let center = add((Vec3::splat(1.0 / 3.0), (a + b + c) / 3.0));
-            let next = numbers.iter().cycle().skip(1);
-            indices.extend(numbers.iter().zip(next).flat_map(|(&from, &to)| [from, to, center]));
-        }
-    }
-
     /// The vertex at the given weights of the corners of a place where an element lies.
-    fn add_vertex(
-        &self,
-        at: Place,
-        shared: [u32; 3],
-        weights: Vec3,
-        position: Vec3,
-        skin: Option<Skin>,
-        vertices: &mut Vertices,
-    ) -> u32 {
-        let scene = &self.problem.scene;
-        let material = scene.material_of(at.triangle);
-        let on_element = |corners: [Vec2; 3]| corners.iter().zip(weights.to_array()).map(|(c, w)| *c * w).sum::<Vec2>();
-        let uv = on_element(self.problem.mesh.corners_at(at));
-        let corners = scene.triangles[at.triangle as usize].vertices.map(|v| &scene.vertices[v as usize]);
-        let of_triangle = [1.0 - uv.x - uv.y, uv.x, uv.y];
-        let tint: Rgb = corners.iter().zip(of_triangle).map(|(c, w)| c.color * w).sum();
-        let texture_uv = skin.map_or(Vec2::ZERO, |skin| {
-            corners.iter().zip(of_triangle).map(|(c, w)| w * if skin.emits { c.emission_uv } else { c.uv }).sum()
-        });
-        let mean = |light: &dyn Fn(u32) -> Rgb| shared.iter().zip(weights.to_array()).map(|(&v, w)| light(v) * w).sum();
-        let irradiance: Rgb = mean(&|v| self.field.irradiance(v));
-        let std_error: Rgb = mean(&|v| self.field.std_error(v));
-        let color = self.color(material.reflectivity * tint * irradiance, material.emission, skin);
+    fn add_vertex(&self, at: Place, weights: Vec3, position: Vec3, skin: Option<Skin>, vertices: &mut Vertices) -> u32 {
+        let material = self.problem.scene.material_of(at.triangle);
+        let coating = self.faces.coating(at, weights);
+        let texture_uv = skin.map_or(Vec2::ZERO, |skin| if skin.emits { coating.emission_uv } else { coating.uv });
+        let corners = self.field.vertices_at(self.problem, at);
+        let irradiance = mean(corners, weights, |v| self.field.irradiance(v));
+        let std_error = mean(corners, weights, |v| self.field.std_error(v));
+        let color = self.color(material.reflectivity * coating.tint * irradiance, material.emission, skin);
         let light = [irradiance, std_error].map(Rgb::to_array);
         vertices.number(position.to_array(), light, texture_uv.to_array(), color)
     }

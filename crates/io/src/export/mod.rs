@@ -2,9 +2,11 @@
 
 mod csv;
 mod elements;
+mod faces;
 pub mod factors;
 mod glb;
 pub mod glb_container;
+pub mod html;
 pub mod image;
 pub mod json;
 pub mod lightmap;
@@ -66,11 +68,20 @@ impl<'a> LitScene<'a> {
 
     /// The light as it is looked at.
     pub fn field(&self) -> &VertexField {
-        self.field.get_or_init(|| match &self.draft {
-            Some(earlier) => VertexField::draft(self.problem, self.computed, earlier.take()),
-            None if self.smoothing == Smoothing::None => VertexField::as_computed(self.problem, self.computed),
-            None => VertexField::new(self.problem, self.computed),
+        self.field.get_or_init(|| {
+            let earlier = self.draft.as_ref().and_then(RefCell::take);
+            self.field_of(self.computed, earlier)
         })
+    }
+
+    /// The light of `solution`, one of this problem, made as [`LitScene::field`] is; on the vertices of an `earlier` field, if that
+    /// is enough.
+    fn field_of(&self, solution: &Solution, earlier: Option<VertexField>) -> VertexField {
+        match &self.draft {
+            Some(_) => VertexField::draft(self.problem, solution, earlier),
+            None if self.smoothing == Smoothing::None => VertexField::as_computed(self.problem, solution),
+            None => VertexField::new(self.problem, solution),
+        }
     }
 
     /// The field, if anybody has asked for it; that of the earlier draft, if nobody has.
@@ -110,6 +121,7 @@ pub const FORMATS: &[Exporter] = &[
         write: |lit, _| solution_file::write(lit.problem, lit.computed),
     },
     Exporter { extension: "glb", what: "the lit scene, for any viewer of glTF", write: glb::write },
+    Exporter { extension: "html", what: "the lit scene, as a page for any browser", write: html::write },
     Exporter { extension: "png", what: "a picture for a screen", write: picture::write_png },
     Exporter { extension: "exr", what: "a picture in cd/m², linear, for further work", write: picture::write_exr },
     Exporter { extension: "ply", what: "elements as coloured triangles with their light", write: ply::write },
@@ -118,6 +130,11 @@ pub const FORMATS: &[Exporter] = &[
     Exporter { extension: "npz", what: "arrays with a row for each element, for NumPy", write: npz::write },
     Exporter { extension: "json", what: "a summary: totals, balance, light on each object", write: json::write },
 ];
+
+/// The formats that this program can write: all, but for pages if it was built without the viewer.
+pub fn writable() -> impl Iterator<Item = &'static Exporter> {
+    FORMATS.iter().filter(|format| format.extension != "html" || html::template().is_ok())
+}
 
 /// What a writer may be told. Each uses what concerns it.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,11 +165,14 @@ impl Default for ExportOptions {
 /// The writer for `path`, by its extension in upper or lower case.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], which lists the known ones.
+/// [`Error::UnknownFormat`], which lists the known ones; [`Error::NoViewer`] for a page that this program cannot make.
 pub fn for_path(path: &Path) -> Result<&'static Exporter, Error> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if extension == "html" {
+        html::template()?;
+    }
     FORMATS.iter().find(|format| format.extension == extension).ok_or_else(|| {
-        let known: Vec<String> = FORMATS.iter().map(|format| format!(".{}", format.extension)).collect();
+        let known: Vec<String> = writable().map(|format| format!(".{}", format.extension)).collect();
         Error::UnknownFormat {
             path: path.to_owned(),
             known: format!("a solution can be written as {}", known.join(", ")),
@@ -182,7 +202,7 @@ mod tests {
     #[test]
     fn every_format_writes_the_same_bytes_each_time() {
         let (problem, solution) = fixture::lit_box();
-        for format in FORMATS {
+        for format in writable() {
             let write = || (format.write)(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
             let bytes = write();
             assert!(!bytes.is_empty() && bytes == write(), "{}", format.extension);

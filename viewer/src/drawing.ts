@@ -1,0 +1,189 @@
+// The surfaces of a solution in three.js: a mesh with a draw call for each batch, and the light on it.
+
+import {
+  BufferAttribute, BufferGeometry, ClampToEdgeWrapping, type DataTexture, GLSL3, type IUniform, Mesh, MirroredRepeatWrapping,
+  RawShaderMaterial, RepeatWrapping, Scene, SRGBColorSpace, Texture, Vector3, type WebGLRenderer,
+} from "three";
+import { luminance, toLinear } from "./colour";
+import type { Light } from "./light";
+import { gather, provoke } from "./provoking";
+import surfaceFragment from "./shaders/surface.frag.glsl";
+import surfaceVertex from "./shaders/surface.vert.glsl";
+import tone from "./shaders/tone.glsl";
+import type { Batch, Surfaces, TextureHeader } from "./surfaces";
+import { elementTexture, shared } from "./uniforms";
+
+const WRAPPING = { repeat: RepeatWrapping, mirror: MirroredRepeatWrapping, clamp: ClampToEdgeWrapping };
+
+/** A texture, and its mean colour for those who switch textures off. */
+interface Image {
+  texture: Texture;
+  mean: Vector3;
+}
+
+export class Drawing {
+  readonly surfaces: Surfaces;
+  light: Light;
+  readonly scene = new Scene();
+  readonly geometry = new BufferGeometry();
+  /** Of every element: irradiance [lux], and the standard error of its luminance. */
+  readonly elements: DataTexture;
+  /** Luminance [lux] of the irradiance of every element, and its standard error. */
+  lux: Float32Array = new Float32Array();
+  errors: Float32Array = new Float32Array();
+  private readonly source: Uint32Array;
+  private readonly emissions: { batch: Batch; uniform: IUniform<Vector3> }[] = [];
+
+  private constructor(surfaces: Surfaces, light: Light, renderer: WebGLRenderer, other: Drawing | undefined) {
+    this.surfaces = surfaces;
+    this.light = light;
+    this.elements = elementTexture(surfaces.header.elements, renderer.capabilities.maxTextureSize);
+    this.source = other && other.surfaces === surfaces ? this.borrow(other) : this.build(provokingCorner(renderer));
+    this.geometry.setAttribute("irradiance", new BufferAttribute(new Float32Array(3 * this.source.length), 3));
+  }
+
+  /** Makes vertices whose values are flat over triangles at this corner; of which vertex of the surfaces each is a copy. */
+  private build(corner: 0 | 2): Uint32Array {
+    const { indices, elementOf, positions, uv, emissionUv, tint } = this.surfaces;
+    const { indices: turned, source, element } = provoke(indices, elementOf, positions.length / 3, corner);
+    const add = (name: string, values: Float32Array | undefined, size: number) =>
+      values && this.geometry.setAttribute(name, new BufferAttribute(gather(values, size, source), size));
+    this.geometry.setIndex(new BufferAttribute(turned, 1));
+    this.geometry.setAttribute("element", new BufferAttribute(element, 1));
+    add("position", positions, 3);
+    add("uv", uv, 2);
+    add("emissionUv", emissionUv, 2);
+    add("tint", tint, 3);
+    return source;
+  }
+
+  /** Takes the vertices of another drawing of the same surfaces, whose light is that before. */
+  private borrow(other: Drawing): Uint32Array {
+    this.geometry.setIndex(other.geometry.getIndex());
+    for (const [name, attribute] of Object.entries(other.geometry.attributes)) {
+      this.geometry.setAttribute(name === "irradiance" ? "irradianceBefore" : name, attribute);
+    }
+    return other.source;
+  }
+
+  /** The surfaces with light on them; if `other` has the same, it lends its geometry, and differences to it can be shown. */
+  static async make(surfaces: Surfaces, light: Light, renderer: WebGLRenderer, other?: Drawing): Promise<Drawing> {
+    const drawing = new Drawing(surfaces, light, renderer, other);
+    const materials: RawShaderMaterial[] = [];
+    const images = new Map<string, Promise<Image>>();
+    for (const batch of surfaces.header.batches) {
+      drawing.geometry.addGroup(3 * batch.first, 3 * batch.count, materials.length);
+      materials.push(await drawing.material(batch, images, renderer, other));
+    }
+    const mesh = new Mesh(drawing.geometry, materials);
+    mesh.frustumCulled = false;
+    mesh.matrixAutoUpdate = false;
+    drawing.scene.add(mesh);
+    drawing.relight();
+    return drawing;
+  }
+
+  /** Shows the light as it is now: after new light came, or lamps were dimmed. */
+  relight(): void {
+    const vertices = this.geometry.getAttribute("irradiance") as BufferAttribute;
+    (vertices.array as Float32Array).set(gather(this.light.atVertices(), 3, this.source));
+    vertices.needsUpdate = true;
+
+    const irradiance = this.light.onElements();
+    const texels = this.elements.image.data as Float32Array;
+    this.errors = this.light.errorsOnElements();
+    this.lux = new Float32Array(this.errors.length);
+    for (let e = 0; e < this.lux.length; e++) {
+      const [r, g, b] = [irradiance[3 * e]!, irradiance[3 * e + 1]!, irradiance[3 * e + 2]!];
+      this.lux[e] = luminance(r, g, b);
+      texels[4 * e] = r;
+      texels[4 * e + 1] = g;
+      texels[4 * e + 2] = b;
+      texels[4 * e + 3] = this.errors[e]!;
+    }
+    this.elements.needsUpdate = true;
+
+    for (const { batch, uniform } of this.emissions) {
+      const factor = batch.group === null ? [1, 1, 1] : this.light.factors[batch.group]!;
+      uniform.value.set(...(batch.emission.map((v, c) => v * factor[c]!) as [number, number, number]));
+    }
+  }
+
+  private async material(
+    batch: Batch,
+    images: Map<string, Promise<Image>>,
+    renderer: WebGLRenderer,
+    other: Drawing | undefined,
+  ): Promise<RawShaderMaterial> {
+    const image = (header: TextureHeader) => {
+      const key = JSON.stringify(header);
+      const found = images.get(key) ?? this.image(header, renderer);
+      images.set(key, found);
+      return found;
+    };
+    const defines: Record<string, string> = {};
+    const emission = { value: new Vector3() };
+    const uniforms: Record<string, IUniform> = {
+      ...shared,
+      elements: { value: this.elements },
+      elementsBefore: { value: other?.elements ?? this.elements },
+      reflectivity: { value: new Vector3(...batch.reflectivity) },
+      emission,
+    };
+    this.emissions.push({ batch, uniform: emission });
+    if (this.surfaces.tint) defines.HAS_TINT = "";
+    if (this.geometry.hasAttribute("irradianceBefore")) defines.HAS_BEFORE = "";
+    if (batch.reflectivity_texture) {
+      const { texture, mean } = await image(batch.reflectivity_texture);
+      defines.HAS_UV = "";
+      Object.assign(uniforms, { reflectivityMap: { value: texture }, reflectivityMean: { value: mean } });
+    }
+    if (batch.emission_texture) {
+      const { texture, mean } = await image(batch.emission_texture);
+      defines.HAS_EMISSION_UV = "";
+      Object.assign(uniforms, { emissionMap: { value: texture }, emissionMean: { value: mean } });
+    }
+    return new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: surfaceVertex,
+      fragmentShader: surfaceFragment.replace("out vec4 colour;", `out vec4 colour;\n${tone}`),
+      defines,
+      uniforms,
+    });
+  }
+
+  private async image({ image, wrap: [wrapU, wrapV] }: TextureHeader, renderer: WebGLRenderer): Promise<Image> {
+    const bitmap = await this.surfaces.image(image);
+    const texture = new Texture(bitmap);
+    texture.flipY = false;
+    texture.colorSpace = SRGBColorSpace;
+    texture.wrapS = WRAPPING[wrapU];
+    texture.wrapT = WRAPPING[wrapV];
+    texture.anisotropy = Math.min(8, renderer.capabilities.getMaxAnisotropy());
+    texture.needsUpdate = true;
+    return { texture, mean: meanColour(bitmap) };
+  }
+}
+
+/** Linear mean colour of an image, from a few of its pixels. */
+function meanColour(bitmap: ImageBitmap): Vector3 {
+  const SIZE = 64;
+  const context = new OffscreenCanvas(SIZE, SIZE).getContext("2d")!;
+  context.drawImage(bitmap, 0, 0, SIZE, SIZE);
+  const { data } = context.getImageData(0, 0, SIZE, SIZE);
+  const mean = new Vector3();
+  for (let k = 0; k < data.length; k += 4) {
+    mean.x += toLinear(data[k]! / 255);
+    mean.y += toLinear(data[k + 1]! / 255);
+    mean.z += toLinear(data[k + 2]! / 255);
+  }
+  return mean.divideScalar(data.length / 4);
+}
+
+/** Which corner's values are flat over a triangle: the first where that can be chosen, for there it is free of cost everywhere. */
+export function provokingCorner(renderer: WebGLRenderer): 0 | 2 {
+  const extension = renderer.getContext().getExtension("WEBGL_provoking_vertex");
+  if (!extension) return 2;
+  extension.provokingVertexWEBGL(extension.FIRST_VERTEX_CONVENTION_WEBGL);
+  return 0;
+}

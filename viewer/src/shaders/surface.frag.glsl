@@ -1,0 +1,122 @@
+// What is seen of a surface: its light as the eye sees it, or a quantity in false colours; isolux lines over both.
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+
+const int LIGHT = 0, ILLUMINANCE = 1, ERROR = 2, DIFFERENCE = 3;
+
+in vec3 vPosition;
+centroid in vec3 vIrradiance;
+centroid in vec3 vIrradianceBefore;
+centroid in vec2 vUv;
+centroid in vec2 vEmissionUv;
+centroid in vec3 vTint;
+flat in uint vElement;
+
+uniform int mode;
+// Whether each element shows the one value that was computed for it.
+uniform bool byElement;
+uniform bool textured;
+// What luminance is multiplied by.
+uniform float exposure;
+// Irradiance of every element, and the standard error of its luminance; of the other solution the same.
+uniform sampler2D elements;
+uniform sampler2D elementsBefore;
+// Whether errors are shown relative to the values.
+uniform bool relativeError;
+uniform sampler2D palette;
+uniform vec2 range;
+uniform bool logarithmic;
+// Isolux lines: their number, which may be 0, and illuminances, rising.
+uniform int levelCount;
+uniform float levels[24];
+// Width of a line in pixels.
+uniform float lineWidth;
+
+// Of the material; mean colours stand in for textures that are switched off.
+uniform vec3 reflectivity;
+uniform vec3 emission;
+#ifdef HAS_UV
+uniform sampler2D reflectivityMap;
+uniform vec3 reflectivityMean;
+#endif
+#ifdef HAS_EMISSION_UV
+uniform sampler2D emissionMap;
+uniform vec3 emissionMean;
+#endif
+
+out vec4 colour;
+
+vec4 ofElement(sampler2D values) {
+  int width = textureSize(values, 0).x;
+  int e = int(vElement);
+  return texelFetch(values, ivec2(e % width, e / width), 0);
+}
+
+// Luminance [cd/m²] of the surface under so much irradiance.
+vec3 seen(vec3 irradiance) {
+  vec3 rho = reflectivity * vTint;
+  vec3 emitted = emission;
+#ifdef HAS_UV
+  rho *= textured ? texture(reflectivityMap, vUv).rgb : reflectivityMean;
+#endif
+#ifdef HAS_EMISSION_UV
+  emitted *= textured ? texture(emissionMap, vEmissionUv).rgb : emissionMean;
+#endif
+  return (emitted + rho * irradiance) * 0.31830988618;
+}
+
+float onScale(float value) {
+  float t = logarithmic ? log(max(value, 1e-30) / range.x) / log(range.y / range.x) : (value - range.x) / (range.y - range.x);
+  return clamp(t, 0.0, 1.0);
+}
+
+vec3 falseColour(float value) {
+  float size = float(textureSize(palette, 0).x);
+  return texture(palette, vec2((0.5 + onScale(value) * (size - 1.0)) / size, 0.5)).rgb;
+}
+
+// How much of a pixel lies on an isolux line, in [0, 1].
+float onLine(float lux) {
+  float change = max(fwidth(lux), 1e-6 * abs(lux) + 1e-20);
+  float below = -1e30, above = 1e30;
+  for (int k = 0; k < levelCount; k++) {
+    if (levels[k] <= lux) below = levels[k];
+    else above = min(above, levels[k]);
+  }
+  float nearest = min(lux - below, above - lux);
+  // Where light is as good as even a line would be as wide as the wall; where it changes within pixels there would be lines all over.
+  float seen = smoothstep(0.0, 2e-5 * lux, change) * (1.0 - smoothstep(0.3, 0.7, change / min(above - below, 1e3 * lux + 1e-20)));
+  return seen * (1.0 - smoothstep(0.5 * lineWidth - 0.5, 0.5 * lineWidth + 0.5, nearest / change));
+}
+
+void main() {
+  vec3 smoothLight = max(vIrradiance, 0.0);
+  vec4 element = ofElement(elements);
+  vec3 light = byElement ? element.rgb : smoothLight;
+  vec3 shown;
+  if (mode == LIGHT) {
+    shown = onScreen(filmic(seen(light) * exposure));
+  } else if (mode == ILLUMINANCE) {
+    shown = falseColour(luminance(light));
+  } else if (mode == ERROR) {
+    float lux = luminance(element.rgb);
+    float error = relativeError ? 100.0 * element.a / max(lux, 1e-20) : element.a;
+    // An error that is not known is grey, as in the dark.
+    shown = isnan(element.a) || (relativeError && lux <= 0.0) ? vec3(0.25) : falseColour(error);
+  } else {
+#ifdef HAS_BEFORE
+    vec3 before = byElement ? ofElement(elementsBefore).rgb : vIrradianceBefore;
+#else
+    vec3 before = ofElement(elementsBefore).rgb;
+    light = element.rgb;
+#endif
+    shown = falseColour(luminance(light) - luminance(before));
+  }
+  if (levelCount > 0) {
+    float line = onLine(luminance(smoothLight));
+    vec3 ink = luminance(shown) > 0.45 ? vec3(0.0) : vec3(1.0);
+    shown = mix(shown, ink, 0.8 * line);
+  }
+  colour = vec4(shown, 1.0);
+}
