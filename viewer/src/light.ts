@@ -12,6 +12,8 @@ import { studentsT } from "./student";
 export interface ObjectSummary {
   object: number;
   name: string;
+  /** Which side of it, if it has two. */
+  side: "front" | "back" | null;
   area: number;
   mean: number;
   min: number;

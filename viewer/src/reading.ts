@@ -72,7 +72,7 @@ export class ReadingCard {
     const { drawing, element: e, position, irradiance } = this.picked;
     const { surfaces, light } = drawing;
     const reading = light.reading(e);
-    const object = surfaces.objectOf[e]!;
+    const object = surfaces.objectOf(e);
     const [r, g, b] = [0, 1, 2].map((c) => surfaces.reflectivities[3 * e + c]!) as [number, number, number];
     byId("reading-lux").textContent = `${withMargin(reading.lux, reading.margin)} lx`;
     byId("reading-note").textContent = Number.isNaN(reading.margin)

@@ -1,6 +1,7 @@
 // What is known of the solution as a whole: how it was computed, and the light on each object.
 
 import type { Drawing } from "./drawing";
+import type { ObjectSummary } from "./light";
 import { many, significant, withMargin } from "./numbers";
 import { byId, make, terms } from "./page";
 import { studentsT } from "./student";
@@ -43,14 +44,17 @@ export function report(drawing: Drawing): void {
   byId("objects-note").textContent = left > 0 ? `and ${left} smaller ones` : "";
 }
 
-/** Mean irradiance of each object [lux] as the lamps are now, with its 95 % margin, if that is known. */
+/** Number of a side of an object: elements on the only side of one that has none on the other are on its front. */
+const faceNumber = (object: number, side: ObjectSummary["side"]): number => 2 * object + (side === "back" ? 1 : 0);
+
+/** Mean irradiance of each object, or of each side of it, [lux] as the lamps are now, with its 95 % margin, if that is known. */
 function means({ light, surfaces, lux }: Drawing): { name: string; area: number; mean: number; margin: number }[] {
   const sums = new Map<number, number>();
-  surfaces.objectOf.forEach((object, e) => sums.set(object, (sums.get(object) ?? 0) + surfaces.areas[e]! * lux[e]!));
-  return light.header.summary.objects.map(({ object, name, area, mean_error }) => ({
-    name: name || `number ${object}`,
+  surfaces.faceOf.forEach((face, e) => sums.set(face, (sums.get(face) ?? 0) + surfaces.areas[e]! * lux[e]!));
+  return light.header.summary.objects.map(({ object, name, side, area, mean_error }) => ({
+    name: (name || `number ${object}`) + (side ? `, ${side}` : ""),
     area,
-    mean: (sums.get(object) ?? 0) / area,
+    mean: (sums.get(faceNumber(object, side)) ?? 0) / area,
     // That of a mixture is not known here; isolux mix tells it.
     margin: mean_error && light.isAsSolved ? mean_error.std_error * studentsT(light.header.students_t, mean_error.freedom) : NaN,
   }));

@@ -59,9 +59,9 @@ export class Surfaces {
   readonly indices: Uint32Array;
   /** Element of every triangle. */
   readonly elementOf: Uint32Array;
-  /** Of every element: area [m²], object, mean reflectivity. */
+  /** Of every element: area [m²], face (twice the number of its object, and one more on its back), mean reflectivity. */
   readonly areas: Float32Array;
-  readonly objectOf: Uint32Array;
+  readonly faceOf: Uint32Array;
   readonly reflectivities: Float32Array;
   /** Name of the material of every object. */
   readonly materialOf: string[] = [];
@@ -78,11 +78,16 @@ export class Surfaces {
     this.indices = part.numbers("index");
     this.elementOf = part.numbers("triangle_element");
     this.areas = part.floats("area");
-    this.objectOf = part.numbers("object");
+    this.faceOf = part.numbers("face");
     this.reflectivities = part.floats("reflectivity");
     for (const { material, first, count } of part.header.batches) {
-      for (let t = first; t < first + count; t++) this.materialOf[this.objectOf[this.elementOf[t]!]!] = material;
+      for (let t = first; t < first + count; t++) this.materialOf[this.objectOf(this.elementOf[t]!)] = material;
     }
+  }
+
+  /** Number of the object of an element. */
+  objectOf(element: number): number {
+    return this.faceOf[element]! >> 1;
   }
 
   /** The image of a texture. */

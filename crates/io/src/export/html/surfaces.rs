@@ -132,7 +132,7 @@ impl Surfaces {
         part.add_u32("index", self.indices.iter().copied());
         part.add_u32("triangle_element", self.elements.iter().copied());
         part.add_f32("area", mesh.elements().map(|e| [mesh.area(e)]));
-        part.add_u32("object", mesh.elements().map(|e| problem.object(e)));
+        part.add_u32("face", mesh.elements().map(|e| problem.face(e)));
         let reflectivities: Vec<[f32; 3]> = mesh.elements().map(|e| mesh.reflectivity(e).to_array()).collect();
         part.add_f16("reflectivity", &reflectivities);
         add_images(&mut part, &self.batches, &scene.images)?;
