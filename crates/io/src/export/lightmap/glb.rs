@@ -5,7 +5,7 @@
 //! materials are two-sided as they were. What materials are depends on the [`Carrier`]:
 //!
 //! - unlit: one texture for all, of what the surfaces look like, and its coordinates are `TEXCOORD_0`, too, for viewers that know no others.
-//! - MOZ_lightmap: rough non-metals with colours, textures and emission as they were, and the light map, in 8 bits, attached to
+//! - MOZ_lightmap: matt materials with colours, textures and emission as they were, and the light map, in 8 bits, attached to
 //!   each. Light is exposed, so that a viewer without exposure shows the room as bright as the picture: `intensity` and emission
 //!   contain the factor 2^exposure_stops.
 //! - sidecar: the same without the map, emission in cd/m².
@@ -110,6 +110,9 @@ fn add_materials(baked: &BakedScene, glb: &mut GlbBuilder) -> Result<(), Error> 
         let exposed = if map.is_some() { baked.exposure.scale() } else { 1.0 };
         let shown = Material { two_sided, emission: material.emission * exposed, ..material.clone() };
         let mut json = material_json(glb, &shown, EMISSION_SET);
+        // Without it, engines take a share of the light for gloss.
+        glb.use_extension("KHR_materials_specular");
+        json["extensions"]["KHR_materials_specular"] = json!({ "specularFactor": 0.0 });
         if let Some(map) = map {
             glb.use_extension("MOZ_lightmap");
             let intensity = baked.lux_at_white * baked.exposure.scale();
