@@ -120,12 +120,12 @@ impl LookArguments {
     }
 }
 
-fn parse_smoothing(text: &str) -> Result<Smoothing, String> {
+pub fn parse_smoothing(text: &str) -> Result<Smoothing, String> {
     let found = Smoothing::ALL.into_iter().find(|smoothing| smoothing.name() == text);
     found.ok_or_else(|| format!("it is one of {}", Smoothing::ALL.map(Smoothing::name).join(", ")))
 }
 
-fn parse_exposure(text: &str) -> Result<f32, String> {
+pub fn parse_exposure(text: &str) -> Result<f32, String> {
     let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 100.0);
     stops.ok_or_else(|| "give a number of stops between -100 and 100, like -2.5".to_owned())
 }

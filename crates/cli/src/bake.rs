@@ -1,6 +1,6 @@
 //! `isolux bake`: a solution as a lightmap.
 
-use crate::arguments::ThreadArguments;
+use crate::arguments::{ThreadArguments, parse_exposure, parse_smoothing};
 use crate::failure::Failure;
 use crate::interrupt::watch;
 use crate::numbers::{self, count, percent};
@@ -28,9 +28,9 @@ For light in vertices (COLOR_0) no map is needed: 'isolux render room.isolux -o 
 
 /// Write a solution as a lightmap: irradiance in a texture
 ///
-/// Keeps the lightmap coordinates of the scene's file (TEXCOORD_1) if it has any that can be used, and makes them otherwise.
-/// Writes the map as .exr (linear, lux) and .png (8 bits, sRGB), the scene that shows it as .glb, and a .json beside them that says what
-/// is what.
+/// Keeps the lightmap coordinates of the scene's file (TEXCOORD_1) if it has any that can be used, and makes them
+/// otherwise. Writes the map as .exr (linear, lux) and .png (8 bits, sRGB), the scene that shows it as .glb, and a
+/// .json beside them that says what is what.
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Bake {
@@ -41,12 +41,13 @@ pub struct Bake {
     #[arg(short, long = "output", value_name = "OUT", required = true)]
     outputs: Vec<PathBuf>,
 
-    /// How the .glb brings its light: unlit (lit surfaces in one texture, tone-mapped: for every viewer), MOZ_lightmap (the map attached
-    /// to each material by that extension, in 8 bits), sidecar (materials as they were, and an .exr beside it)
+    /// How the .glb brings its light: unlit (lit surfaces in one texture, tone-mapped: for every viewer), MOZ_lightmap
+    /// (the map attached to each material by that extension, in 8 bits), sidecar (materials as they were, and an .exr
+    /// beside it)
     #[arg(long, default_value = "unlit", value_parser = parse_carrier)]
     carrier: Carrier,
 
-    /// Texels for each metre of surface; the map is as large as that takes, up to 16384
+    /// Texels for each metre of surface; the map is as large as that takes, up to 8192
     #[arg(long, value_name = "N", value_parser = parse_density, conflicts_with = "size")]
     texels_per_metre: Option<f32>,
 
@@ -74,9 +75,10 @@ pub struct Bake {
     #[arg(long, value_name = "CAMERA", conflicts_with = "exposure")]
     camera: Option<String>,
 
-    /// Leave the noise in that neighbouring elements could even out
-    #[arg(long)]
-    no_smoothing: bool,
+    /// Where neighbouring elements even each other out as far as their error bars allow, as in 'isolux render'; none leaves
+    /// the noise in
+    #[arg(long, value_name = "WHERE", default_value = "pictures", value_parser = parse_smoothing)]
+    smooth: Smoothing,
 
     #[command(flatten)]
     threads: ThreadArguments,
@@ -99,11 +101,6 @@ fn parse_density(text: &str) -> Result<f32, String> {
     density.ok_or_else(|| "give a number of texels between 0.001 and 1000000, like 50".to_owned())
 }
 
-fn parse_exposure(text: &str) -> Result<f32, String> {
-    let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 100.0);
-    stops.ok_or_else(|| "give a number of stops between -100 and 100, like -2.5".to_owned())
-}
-
 impl Bake {
     pub fn run(self) -> Result<u8, Failure> {
         let pool = self.threads.pool()?;
@@ -123,8 +120,7 @@ impl Bake {
         display.stage("reading the solution");
         let (problem, solution) = input::solution(&self.solution)?;
         display.stage("interpolating the light");
-        let smoothing = if self.no_smoothing { Smoothing::None } else { Smoothing::Pictures };
-        let lit = LitScene::smoothed(&problem, &solution, smoothing);
+        let lit = LitScene::smoothed(&problem, &solution, self.smooth);
         let exposure = self.exposure.map(|stops| Exposure { stops });
         let view = ViewOptions { camera: self.camera.clone(), exposure, ..ViewOptions::default() };
         let exposure = view::exposure(&problem, lit.field(), &view)?;

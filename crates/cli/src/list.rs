@@ -73,6 +73,10 @@ fn formats() -> String {
     for format in export::FORMATS {
         text += &format!("  .{:<11} {}\n", format.extension, format.what);
     }
+    text += "\nLightmaps are written to (isolux bake -o)\n";
+    for format in export::lightmap::FORMATS {
+        text += &format!("  .{:<11} {}\n", format.extension, format.what);
+    }
     text
 }
 

@@ -44,8 +44,9 @@ fn whatever_is_wrong_is_said_and_nothing_is_written() {
     let fails = |arguments: &[&str]| folder.fails(2, &[&["bake", "a.isolux"], arguments].concat());
     assert!(fails(&["-o", "a.obj"]).contains("can be written as .glb, .exr, .png, .json"));
     assert!(fails(&["-o", "a.glb", "--carrier", "wagon"]).contains("unlit, MOZ_lightmap, sidecar"));
-    assert!(fails(&["-o", "a.glb", "--texels-per-metre", "100000"]).contains("16384 are the most"));
-    assert!(fails(&["-o", "a.glb", "--size", "3"]).contains("16 to 16384"));
+    assert!(fails(&["-o", "a.glb", "--texels-per-metre", "100000"]).contains("8192 are the most"));
+    assert!(fails(&["-o", "a.glb", "--smooth", "much"]).contains("pictures, all, none"));
+    assert!(fails(&["-o", "a.glb", "--size", "3"]).contains("16 to 8192"));
     assert!(fails(&["-o", "a.glb", "--padding", "0"]).contains("1 to 64 texels"));
     assert!(fails(&["-o", "a.glb", "--camera", "9"]).contains("camera"));
     assert!(fails(&["-o", "nowhere/a.glb"]).contains("nowhere"));

@@ -7,7 +7,7 @@ use crate::{Error, Problem};
 use glam::{DVec2, Vec2};
 
 /// Most texels along each side: as many as graphics cards take.
-pub const MOST_SIZE: u32 = 16_384;
+pub const MOST_SIZE: u32 = 8192;
 /// Most texels between charts and around the map.
 const MOST_PADDING: u32 = 64;
 
@@ -15,8 +15,8 @@ const MOST_PADDING: u32 = 64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     pub density: Density,
-    /// Texels around each chart that only continue it: neighbouring charts are twice as far apart. At least one, so that no lookup on a
-    /// surface reads another chart; each level of mipmaps takes twice as many.
+    /// Texels around each chart that only continue it: neighbouring charts are twice as far apart. At least one, so
+    /// that no lookup on a surface reads another chart; each level of mipmaps takes twice as many.
     pub padding: u32,
     /// Every chart with its padding has its own blocks of 4 x 4 texels, for formats that compress blocks.
     pub align_blocks: bool,
@@ -131,7 +131,7 @@ fn check(layout: &Layout) -> Result<(), Error> {
     }
     match layout.density {
         Density::Size(size) if !(16..=MOST_SIZE).contains(&size) => {
-            wrong("size", size.to_string(), "16 to 16384 texels")
+            wrong("size", size.to_string(), "16 to 8192 texels")
         }
         Density::Size(size) if layout.align_blocks && size % 4 != 0 => {
             wrong("size", size.to_string(), "with aligned blocks it is a multiple of 4")

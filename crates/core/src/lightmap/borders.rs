@@ -1,10 +1,12 @@
 //! No seam along the borders of charts: texels just outside are set so that lookups on the border find the field's light.
 //!
-//! The field is continuous where charts of a smooth surface meet, whatever objects they belong to. So if a bilinear lookup on a border gives the
-//! field's value from either side, both sides agree. Texels whose centres lie on the surface stay what they are; those beyond the border, which
-//! only lookups near it read, are the unknowns `x` of a least squares problem with a row for each point of the borders: `sum w_j x_j = E - sum w_k t_k`,
-//! solved by simultaneous iterative reconstruction (Gilbert 1972), which starts at the light of the nearest point of the surface and changes
-//! it no more than needed. On straight gradients the rows can be met exactly: then lookups extrapolate the light of the surface.
+//! The field is continuous where charts of a smooth surface meet, whatever objects they belong to. So if a bilinear
+//! lookup on a border gives the field's value from either side, both sides agree. Texels whose centres lie on the
+//! surface stay what they are; those beyond the border, which only lookups near it read, are the unknowns `x` of a
+//! least squares problem with a row for each point of the borders: `sum w_j x_j = E - sum w_k t_k`, solved by
+//! simultaneous iterative reconstruction (Gilbert 1972), which starts at the light of the nearest point of the surface
+//! and changes it no more than needed. On straight gradients the rows can be met exactly: then lookups extrapolate the
+//! light of the surface.
 
 use super::texels::stencil;
 use super::{Atlas, Border, Texels};

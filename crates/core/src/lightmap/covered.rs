@@ -1,10 +1,10 @@
 //! Which texels lie under other geometry.
 //!
-//! A floor runs on below the cupboard that stands on it, and is black there. Nobody sees that, but a lookup just before the cupboard reads a
-//! texel just below it, and so would every mipmap: a dark fringe around everything that stands somewhere. So a texel that is darker than
-//! those beside it looks around, in a few directions; if it sees nothing but darkness, it is covered. From there on the test spreads to its neighbours.
-//! The rule is that of pictures ([`crate::view`], `cover.rs`), with texels in place of elements. Cost: some rays for each texel at an
-//! edge of light.
+//! A floor runs on below the cupboard that stands on it, and is black there. Nobody sees that, but a lookup just before
+//! the cupboard reads a texel just below it, and so would every mipmap: a dark fringe around everything that stands
+//! somewhere. So a texel that is darker than those beside it looks around, in a few directions; if it sees nothing but
+//! darkness, it is covered. From there on the test spreads to its neighbours. The rule is that of pictures
+//! ([`crate::view`], `cover.rs`), with texels in place of elements. Cost: some rays for each texel at an edge of light.
 
 use super::{Atlas, Texel, Texels};
 use crate::Problem;

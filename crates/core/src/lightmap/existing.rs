@@ -1,7 +1,7 @@
 //! The coordinates that a file has: whether they are those of a lightmap.
 //!
-//! Whoever made them knows what they are for, so they are taken as they are, unless a map on them would be wrong: outside of the map, or with
-//! two surfaces in the same place.
+//! Whoever made them knows what they are for, so they are taken as they are, unless a map on them would be wrong:
+//! outside of the map, or with two surfaces in the same place.
 
 use super::atlas::{MOST_SIZE, area, area_in_texels};
 use super::{Density, Face, Layout};

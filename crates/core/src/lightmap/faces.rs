@@ -56,8 +56,8 @@ impl Face {
     }
 }
 
-/// The faces that get texels of their own, object by object, fronts before backs. Both sides of a two-sided surface are there, but for
-/// the dark insides of things.
+/// The faces that get texels of their own, object by object, fronts before backs. Both sides of a two-sided surface are
+/// there, but for the dark insides of things.
 pub fn lit_faces(problem: &Problem, field: &VertexField) -> Vec<Face> {
     let sides = |triangle: u32| {
         let light = side_light(problem, field, triangle);

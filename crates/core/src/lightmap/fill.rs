@@ -1,7 +1,7 @@
 //! Texels that have no light of their own continue the charts beside them (dilation).
 //!
-//! Wave by wave, each texel takes the mean of its neighbours that are known and on the same chart: those beside it count fully, those across a
-//! corner half. Constant light stays exactly constant.
+//! Wave by wave, each texel takes the mean of its neighbours that are known and on the same chart: those beside it
+//! count fully, those across a corner half. Constant light stays exactly constant.
 
 use super::{Atlas, Texels};
 use crate::math::Rgb;
@@ -9,8 +9,8 @@ use crate::math::Rgb;
 /// "No chart".
 const NONE: u32 = u32::MAX;
 
-/// Gives `covered` texels the light of their charts around them, as deep as the padding: what is deeper is read by nobody, and keeps
-/// what it has.
+/// Gives `covered` texels the light of their charts around them, as deep as the padding: what is deeper is read by
+/// nobody, and keeps what it has.
 pub fn continue_under(atlas: &Atlas, texels: &Texels, covered: &[bool], irradiance: &mut [Rgb]) {
     let chart = charts(atlas, texels);
     let mut known: Vec<u32> =

@@ -3,13 +3,13 @@
 //! ```text
 //! Problem + VertexField --faces, atlas--> where every triangle lies in the map    (unwrap: made; existing: the file's own)
 //!                       --texels-------> which point of the surface each texel shows
-//!                       --bake---------> irradiance [lux] of every texel          (covered, borders, fill: where that is not enough)
+//!                       --bake---------> irradiance [lux] of every texel       (covered, borders, fill: where that is not enough)
 //! ```
 //!
-//! Every texel that a bilinear lookup on a surface reads has a point of that surface: the one at its centre, or the nearest. Texels that lie
-//! under other geometry take the light of those beside them ([`covered`]), those beyond the border of a chart are set so that a lookup on the
-//! border gives the field's value ([`borders`]), and everything between charts continues them ([`fill`]). Biased by what a texel cannot
-//! show: light is linear between texel centres.
+//! Every texel that a bilinear lookup on a surface reads has a point of that surface: the one at its centre, or the
+//! nearest. Texels that lie under other geometry take the light of those beside them ([`covered`]), those beyond the
+//! border of a chart are set so that a lookup on the border gives the field's value ([`borders`]), and everything
+//! between charts continues them ([`fill`]). Biased by what a texel cannot show: light is linear between texel centres.
 
 mod atlas;
 mod borders;
@@ -39,7 +39,8 @@ use rayon::prelude::*;
 pub struct Lightmap {
     pub atlas: Atlas,
     pub texels: Texels,
-    /// Irradiance [lux] of every texel, rows from the top; those that no lookup on a surface reads continue the charts beside them.
+    /// Irradiance [lux] of every texel, rows from the top; those that no lookup on a surface reads continue the charts
+    /// beside them.
     pub irradiance: Vec<Rgb>,
     /// Texels that lie under other geometry, and took the light of those beside them.
     pub covered: u32,
@@ -48,7 +49,8 @@ pub struct Lightmap {
 /// The light of `field` in a map that is laid out as `layout` says.
 ///
 /// # Errors
-/// [`Error::Lightmap`] if the map would be too large, or there is nothing to show; [`Error::Parameter`] for a layout without meaning.
+/// [`Error::Lightmap`] if the map would be too large, or there is nothing to show; [`Error::Parameter`] for a
+/// layout without meaning.
 pub fn bake(problem: &Problem, field: &VertexField, layout: &Layout) -> Result<Lightmap, Error> {
     let atlas = Atlas::new(problem, field, layout)?;
     let texels = Texels::of(&atlas);
@@ -65,8 +67,8 @@ pub fn bake(problem: &Problem, field: &VertexField, layout: &Layout) -> Result<L
 }
 
 impl Lightmap {
-    /// Irradiance [lux] at `uv`, as a program that shows the map finds it: by bilinear interpolation, without mipmaps. (0, 0) is the upper
-    /// left corner of the map.
+    /// Irradiance [lux] at `uv`, as a program that shows the map finds it: by bilinear interpolation, without mipmaps.
+    /// (0, 0) is the upper left corner of the map.
     pub fn lookup(&self, uv: Vec2) -> Rgb {
         let stencil = texels::stencil(uv, self.atlas.width, self.atlas.height);
         stencil.into_iter().map(|(texel, weight)| self.irradiance[texel] * weight).sum()

@@ -21,8 +21,8 @@ pub struct ObjectTexels {
     pub texels: u64,
     /// Area of what is shown of it [m²]; both sides of two-sided surfaces count where both are shown.
     pub area: f64,
-    /// Mean illuminance by area of lookups all over it [lux], and of the elements there. They differ by what is covered, and by what a
-    /// texel cannot show.
+    /// Mean illuminance by area of lookups all over it [lux], and of the elements there. They differ by what is
+    /// covered, and by what a texel cannot show.
     pub mean: f64,
     pub mean_of_solution: f64,
 }

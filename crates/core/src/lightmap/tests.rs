@@ -332,7 +332,7 @@ fn density_is_what_was_asked_for_or_an_error_says_what_fits() {
     let lightmap = with(Density::TexelsPerMetre(40.0)).unwrap();
     assert!((lightmap.atlas.texels_per_metre - 40.0).abs() < 0.1, "{}", lightmap.atlas.texels_per_metre);
     let message = with(Density::TexelsPerMetre(1e5)).unwrap_err().to_string();
-    assert!(message.contains("16384 are the most; about "), "{message}");
+    assert!(message.contains("8192 are the most; about "), "{message}");
     let fits: f32 = message.split("about ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!(fits > 100.0 && fits < 1e5);
     for wrong in [Density::Size(0), Density::Size(1 << 20), Density::TexelsPerMetre(f32::NAN)] {

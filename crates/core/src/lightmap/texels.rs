@@ -1,8 +1,9 @@
 //! Which point of the surface each texel shows.
 //!
-//! A bilinear lookup anywhere on a triangle reads the four texels around it. All of these have a point: that at the texel's centre if
-//! a triangle is there, else the nearest point of any triangle. So coverage is conservative in the strict sense, that no lookup on a surface
-//! reads a texel without light, and a triangle smaller than a texel has texels, too.
+//! A bilinear lookup anywhere on a triangle reads the four texels around it. All of these have a point: that at the
+//! texel's centre if a triangle is there, else the nearest point of any triangle. So coverage is conservative in the
+//! strict sense, that no lookup on a surface reads a texel without light, and a triangle smaller than a texel has
+//! texels, too.
 
 use super::Atlas;
 use glam::{DVec2, Vec2};
@@ -75,7 +76,8 @@ impl Texels {
     }
 }
 
-/// The point of a triangle that is nearest to `p`, in barycentric coordinates (those of the second and the third corner), and its distance.
+/// The point of a triangle that is nearest to `p`, in barycentric coordinates (those of the second and the third
+/// corner), and its distance.
 fn nearest_point([a, b, c]: [DVec2; 3], p: DVec2) -> (DVec2, f64) {
     let area = (b - a).perp_dot(c - a);
     let (u, v) = ((p - a).perp_dot(c - a) / area, (b - a).perp_dot(p - a) / area);

@@ -1,8 +1,9 @@
 //! Coordinates for surfaces that have none: cut into charts, flattened and packed by the crate `uvunwrap`.
 //!
-//! Charts are grown along surfaces, flattened by least squares conformal maps (Lévy et al. 2002) and as rigidly as possible (Liu et al. 2008),
-//! and packed by their shapes. What is ours: which edges must be cut. A lookup across an edge of a chart mixes the texels of both sides, so
-//! charts end where light jumps: at sharp edges, and where something stands on a surface. Texels are equally large everywhere.
+//! Charts are grown along surfaces, flattened by least squares conformal maps (Lévy et al. 2002) and as rigidly as
+//! possible (Liu et al. 2008), and packed by their shapes. What is ours: which edges must be cut. A lookup across an
+//! edge of a chart mixes the texels of both sides, so charts end where light jumps: at sharp edges, and where something
+//! stands on a surface. Texels are equally large everywhere.
 
 use super::atlas::{MOST_SIZE, area};
 use super::{Density, Face, Layout};
@@ -63,7 +64,8 @@ pub fn unwrap(problem: &Problem, faces: &[Face], layout: &Layout) -> Result<Unwr
     if atlas.page_count > 1 {
         let charts = atlas.chart_count;
         let what = format!(
-            "{charts} charts with {} texels of padding around each do not fit into one map of this size; ask for a larger size, or less padding",
+            "{charts} charts with {} texels of padding around each do not fit into one map of this size; ask for a larger \
+             size, or less padding",
             layout.padding
         );
         return Err(Error::Lightmap { what });
@@ -81,7 +83,8 @@ pub fn unwrap(problem: &Problem, faces: &[Face], layout: &Layout) -> Result<Unwr
 fn too_large(needed: f64, asked: f32, surface: f64) -> Error {
     let fits = f64::from(MOST_SIZE) * (USED / surface).sqrt();
     let what = format!(
-        "at {asked} texels per metre it would be more than {needed:.0} texels across, and {MOST_SIZE} are the most; about {} fit",
+        "at {asked} texels per metre it would be more than {needed:.0} texels across, and {MOST_SIZE} are the most; about \
+         {} fit",
         if fits > 10.0 { format!("{fits:.0}") } else { format!("{fits:.2}") }
     );
     Error::Lightmap { what }

@@ -41,12 +41,13 @@ pub struct Scene {
     pub lights: Vec<Light>,
     pub cameras: Vec<Camera>,
     pub shape: Shape,
-    /// Edges of triangles on which other surfaces stand, as sorted pairs of vertices in ascending order: see [`cut_at_contacts`].
+    /// Edges of triangles on which other surfaces stand, as sorted pairs of vertices in ascending order: see
+    /// [`cut_at_contacts`].
     pub contacts: Vec<[u32; 2]>,
     /// Which triangles have a back that nobody can see, whatever their material says; empty if none has: see [`Scene::hide_insides`].
     pub hidden_backs: Vec<bool>,
-    /// Coordinates in a lightmap of every vertex (glTF `TEXCOORD_1`), (0, 0) is the upper left corner of the map; empty if the file has
-    /// none, or not for all. They change no solution.
+    /// Coordinates in a lightmap of every vertex (glTF `TEXCOORD_1`), (0, 0) is the upper left corner of the map; empty
+    /// if the file has none, or not for all. They change no solution.
     pub lightmap_uvs: Vec<Vec2>,
     /// What the reader assumed, ignored or dropped, one sentence each, for people.
     pub remarks: Vec<String>,

@@ -1,13 +1,15 @@
 //! The scene with its lightmap as a GLB.
 //!
-//! One mesh and node for each object, and the cameras. `TEXCOORD_1` are the coordinates in the map. Faces are those that have texels: both
-//! sides of a two-sided surface are faces of their own, without the dark insides of things, unless the coordinates are the file's; then
-//! materials are two-sided as they were. What materials are depends on the [`Carrier`]:
+//! One mesh and node for each object, and the cameras. `TEXCOORD_1` are the coordinates in the map. Faces are those
+//! that have texels: both sides of a two-sided surface are faces of their own, without the dark insides of things,
+//! unless the coordinates are the file's; then materials are two-sided as they were. What materials are depends on the
+//! [`Carrier`]:
 //!
-//! - unlit: one texture for all, of what the surfaces look like, and its coordinates are `TEXCOORD_0`, too, for viewers that know no others.
-//! - MOZ_lightmap: rough non-metals with colours, textures and emission as they were, and the light map, in 8 bits, attached to
-//!   each. Light is exposed, so that a viewer without exposure shows the room as bright as the picture: `intensity` and emission
-//!   contain the factor 2^exposure_stops.
+//! - unlit: one texture for all, of what the surfaces look like, and its coordinates are `TEXCOORD_0`, too, for viewers
+//!   that know no others.
+//! - MOZ_lightmap: matt materials with colours, textures and emission as they were, and the light map, in 8 bits, attached to
+//!   each. Light is exposed, so that a viewer without exposure shows the room as bright as the picture: `intensity` and
+//!   emission contain the factor 2^exposure_stops.
 //! - sidecar: the same without the map, emission in cd/m².
 
 use super::{BakedScene, Carrier, maps};
@@ -57,7 +59,8 @@ fn asset(baked: &BakedScene) -> Value {
             "baseColorTexture: radiosity / pi [cd/m^2] times 2^exposure_stops, filmic tone curve (Hable 2010), sRGB"
         }
         Carrier::MozLightmap => {
-            "MOZ_lightmap: linear; irradiance [lux] = texel / 255 * lux_at_white; intensity and emission are exposed by 2^exposure_stops"
+            "MOZ_lightmap: linear; irradiance [lux] = texel / 255 * lux_at_white; \
+             intensity and emission are exposed by 2^exposure_stops"
         }
         Carrier::Sidecar => "TEXCOORD_1: coordinates in the map beside this file; the map holds irradiance [lux]",
     };
@@ -110,6 +113,9 @@ fn add_materials(baked: &BakedScene, glb: &mut GlbBuilder) -> Result<(), Error> 
         let exposed = if map.is_some() { baked.exposure.scale() } else { 1.0 };
         let shown = Material { two_sided, emission: material.emission * exposed, ..material.clone() };
         let mut json = material_json(glb, &shown, EMISSION_SET);
+        // Without it, engines take a share of the light for gloss.
+        glb.use_extension("KHR_materials_specular");
+        json["extensions"]["KHR_materials_specular"] = json!({ "specularFactor": 0.0 });
         if let Some(map) = map {
             glb.use_extension("MOZ_lightmap");
             let intensity = baked.lux_at_white * baked.exposure.scale();
@@ -123,7 +129,8 @@ fn add_materials(baked: &BakedScene, glb: &mut GlbBuilder) -> Result<(), Error> 
 /// Adds a map as a texture; gives its index.
 fn add_map(glb: &mut GlbBuilder, png: &[u8]) -> usize {
     let source = glb.add_image_png("lightmap", png);
-    // Linear between texels, no repetition, and no mipmap: a coarse level mixes charts, and draws dark lines along their borders.
+    // Linear between texels, no repetition, and no mipmap: a coarse level mixes charts, and draws dark lines along
+    // their borders.
     let sampler = json!({ "magFilter": 9_729, "minFilter": 9_729, "wrapS": 33_071, "wrapT": 33_071 });
     let sampler = glb.push("samplers", sampler);
     glb.push("textures", json!({ "sampler": sampler, "source": source }))

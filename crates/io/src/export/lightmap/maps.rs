@@ -10,7 +10,8 @@ use isolux_core::view::tone;
 pub fn write_exr(baked: &BakedScene) -> Result<Vec<u8>, Error> {
     let atlas = &baked.lightmap.atlas;
     let comment = format!(
-        "Irradiance E in lux (lm/m^2), linear Rec. 709, without the reflectivity of surfaces: luminance = reflectivity * E / pi cd/m^2. \
+        "Irradiance E in lux (lm/m^2), linear Rec. 709, without the reflectivity of surfaces: \
+         luminance = reflectivity * E / pi cd/m^2. \
          Illuminance = 0.2126 R + 0.7152 G + 0.0722 B. Rows from the top, glTF texture coordinates; exposed by 2^{:.3}.",
         baked.exposure.stops
     );

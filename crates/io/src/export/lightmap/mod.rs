@@ -19,7 +19,8 @@ pub enum Carrier {
     Unlit,
     /// As a light map that is attached to each material by the extension `MOZ_lightmap`, which Hubs and three.js know.
     MozLightmap,
-    /// Not at all: materials as they were and coordinates for the map beside it, an `.exr`, to be attached by whoever loads both.
+    /// Not at all: materials as they were and coordinates for the map beside it, an `.exr`, to be attached by whoever
+    /// loads both.
     Sidecar,
 }
 
@@ -140,7 +141,8 @@ fn on_surfaces(lightmap: &Lightmap) -> Vec<f32> {
     shown.map(|(_, light)| light.max_channel()).collect()
 }
 
-/// Irradiance [lux] that only few texels exceed; no more than what makes a surface of reflectivity 1/2 white when it is exposed.
+/// Irradiance [lux] that only few texels exceed; no more than what makes a surface of reflectivity 1/2 white when it is
+/// exposed.
 fn white(lightmap: &Lightmap, exposure: Exposure) -> f32 {
     let mut levels = on_surfaces(lightmap);
     levels.sort_by(f32::total_cmp);
