@@ -31,12 +31,16 @@ export class Drawing {
   /** Luminance [lux] of the irradiance of every element, and its standard error. */
   lux: Float32Array = new Float32Array();
   errors: Float32Array = new Float32Array();
+  /** Area [m²] of every element that is drawn; 0 of the others. */
+  readonly seen: Float32Array;
   private readonly source: Uint32Array;
   private readonly emissions: { batch: Batch; uniform: IUniform<Vector3> }[] = [];
 
   private constructor(surfaces: Surfaces, light: Light, renderer: WebGLRenderer, other: Drawing | undefined) {
     this.surfaces = surfaces;
     this.light = light;
+    this.seen = new Float32Array(surfaces.areas.length);
+    for (const e of surfaces.elementOf) this.seen[e] = surfaces.areas[e]!;
     this.elements = elementTexture(surfaces.header.elements, renderer.capabilities.maxTextureSize);
     this.source = other && other.surfaces === surfaces ? this.borrow(other) : this.build(provokingCorner(renderer));
     this.geometry.setAttribute("irradiance", new BufferAttribute(new Float32Array(3 * this.source.length), 3));

@@ -124,5 +124,5 @@ function area(squareMetres: number): string {
 }
 
 function metres({ x, y, z }: Vector3): string {
-  return [x, y, z].map((v) => v.toFixed(2)).join(", ");
+  return [x, y, z].map((v) => v.toFixed(3)).join(", ");
 }

@@ -129,12 +129,14 @@ export class Viewer {
     const key = `${this.palette} ${logarithmic} ${relativeError}`;
     const known = this.scales.get(key);
     if (known) return known;
-    const { lux, errors, surfaces: { areas } } = this.after;
+    const { lux, errors, seen } = this.after;
     const before = this.before?.lux;
     let scale: Scale;
-    if (this.palette === "difference" && before) scale = symmetric(lux.map((v, e) => v - before[e]!), areas);
-    else if (this.palette === "error" && relativeError) scale = automatic(errors.map((v, e) => (100 * v) / lux[e]!), areas, logarithmic);
-    else scale = automatic(this.palette === "error" ? errors : lux, areas, logarithmic);
+    if (this.palette === "difference" && before) scale = symmetric(lux.map((v, e) => v - before[e]!), seen);
+    else if (this.palette === "error" && relativeError) {
+      // Errors of what is dark are large, and hardly matter.
+      scale = automatic(errors.map((v, e) => (100 * v) / lux[e]!), seen.map((area, e) => area * lux[e]!), logarithmic);
+    } else scale = automatic(this.palette === "error" ? errors : lux, seen, logarithmic);
     this.scales.set(key, scale);
     return scale;
   }
