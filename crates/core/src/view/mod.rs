@@ -24,7 +24,7 @@ pub mod tone;
 pub mod vertex_field;
 pub(crate) mod vertices;
 
-pub use picture::{Picture, ViewOptions, exposure, render, render_field};
+pub use picture::{ElementPicture, Picture, ViewOptions, elements, exposure, render, render_field};
 pub use seams::EdgePoints;
 pub use smooth::smooth;
 pub use tone::Exposure;
