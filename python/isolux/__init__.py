@@ -60,8 +60,8 @@ __version__ = _native.__version__
 def names(
     table: Literal["scenes", "methods", "orders", "sequences", "ways", "studies", "readers", "writers"],
 ) -> list[str]:
-    """What can be asked for by name: built-in scenes, methods, orders and sample sequences of methods, ways to form factors, studies, and the
-    extensions of files that are read and written.
+    """What can be asked for by name: built-in scenes, methods, orders and sample sequences of methods, ways to form factors, studies, and
+    the extensions of files that are read and written.
 
     Raises:
         UnknownName: there is no such table.

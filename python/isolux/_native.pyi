@@ -13,6 +13,21 @@ _U32 = npt.NDArray[np.uint32]
 _I32 = npt.NDArray[np.int32]
 _I64 = npt.NDArray[np.int64]
 
+__all__ = [
+    "FormFactors",
+    "Problem",
+    "Request",
+    "Scene",
+    "Solution",
+    "__version__",
+    "form_factors",
+    "names",
+    "run",
+    "solve",
+    "student",
+    "study",
+]
+
 __version__: str
 
 def names(table: str) -> list[str]: ...
@@ -41,9 +56,7 @@ class Scene:
     @staticmethod
     def load(name: str | os.PathLike[str], light_units: str) -> Scene: ...
     @staticmethod
-    def from_arrays(
-        name: str, vertices: _F32, triangles: _U32, objects: _U32, names: list[str], materials: list[str]
-    ) -> Scene: ...
+    def from_arrays(name: str, vertices: _F32, triangles: _U32, objects: _U32, names: list[str], materials: list[str]) -> Scene: ...
     def copy(self) -> Scene: ...
     @property
     def name(self) -> str: ...

@@ -55,7 +55,7 @@ def convergence(
     """
     problem = scene if isinstance(scene, Problem) else Problem(as_scene(scene), elements=elements)
     told = {name: {"method": name} for name in methods} if not isinstance(methods, Mapping) else dict(methods)
-    rows: list[tuple[str, float, int, float]] = []
+    rows: list[tuple[str, float, int, int, float]] = []
     with bar("convergence", progress) as shown:
         shown.show(0.0, "reference")
         known = reference or solve(problem, rays=BETTER * max(rays), seed=1_000_003)
@@ -64,7 +64,7 @@ def convergence(
         runs = [(name, count, seed) for count in sorted(rays) for name in told for seed in range(1, seeds + 1)]
         for k, (name, count, seed) in enumerate(runs):
             solution = solve(problem, rays=count, seed=seed, **told[name])
-            rows.append((name, float(solution.rays), seed, _error(solution, known)))
+            rows.append((name, float(count), solution.rays, seed, _error(solution, known)))
             shown.show((k + 1) / len(runs), f"{name}, {count:,.0f} rays")
     return Convergence(problem.scene.name, list(told), rows)
 
@@ -84,24 +84,24 @@ class Convergence:
 
     scene: str
     methods: list[str]
-    rows: list[tuple[str, float, int, float]]
-    """Method, rays, seed, relative RMS error."""
+    rows: list[tuple[str, float, int, int, float]]
+    """Method, rays that were asked for, rays that it took, seed, relative RMS error."""
 
     def to_dataframe(self) -> pd.DataFrame:
-        """A row for each solve: scene, series (the method), rays, seed, error.
+        """A row for each solve: scene, series (the method), rays that were asked for (`at`) and taken, seed, error.
 
         Raises:
             MissingPackage: pandas is not installed.
         """
-        table = needed("pandas", "a table").DataFrame(self.rows, columns=["series", "rays", "seed", "error"])
+        table = needed("pandas", "a table").DataFrame(self.rows, columns=["series", "at", "rays", "seed", "error"])
         table.insert(0, "scene", self.scene)
         return table  # type: ignore[no-any-return]
 
     def slope(self, method: str) -> tuple[float, float]:
         """The slope of the error against the rays in doubly logarithmic axes, and its 95 % margin over seeds; -0.5 with random numbers."""
         slopes = []
-        for seed in sorted({row[2] for row in self.rows}):
-            points = np.array([(row[1], row[3]) for row in self.rows if row[0] == method and row[2] == seed])
+        for seed in sorted({row[3] for row in self.rows}):
+            points = np.array([(row[2], row[4]) for row in self.rows if row[0] == method and row[3] == seed])
             known = np.isfinite(points[:, 1])
             slopes.append(np.polyfit(np.log(points[known, 0]), np.log(points[known, 1]), 1)[0])
         spread = np.std(slopes, ddof=1) / math.sqrt(len(slopes)) if len(slopes) > 1 else math.nan
@@ -147,10 +147,9 @@ def draw_curves(table: Any, x: str, y: str, x_label: str, y_label: str, title: s
 
 
 def _draw_curve(axes: Any, rows: Any, x: str, y: str, name: str, k: int) -> None:
-    places = rows["at"] if "at" in rows else rows[x].round(-3)
-    known = rows[(rows[x] > 0) & (rows[y] > 0)].assign(place=places)
+    known = rows[(rows[x] > 0) & (rows[y] > 0)]
     points = []
-    for _, group in known.groupby("place"):
+    for _, group in known.groupby("at"):
         logs = np.log(group[y].to_numpy(dtype=float))
         margin = math.nan
         if len(logs) > 1:
@@ -158,8 +157,8 @@ def _draw_curve(axes: Any, rows: Any, x: str, y: str, name: str, k: int) -> None
         points.append((float(np.exp(np.log(group[x]).mean())), float(np.exp(logs.mean())), margin))
     if not points:
         return
-    at, mean, margin = (np.array(column) for column in zip(*points, strict=True))
-    factor = np.exp(np.nan_to_num(margin))
+    at, mean, margins = (np.array(column) for column in zip(*points, strict=True))
+    factor = np.exp(np.nan_to_num(margins))
     bars = [mean - mean / factor, mean * factor - mean]
     style = {"marker": MARKERS[k % len(MARKERS)], "markersize": 4.5, "linewidth": 1.4, "capsize": 2.5, "elinewidth": 0.9}
     axes.errorbar(at, mean, yerr=bars, color=f"C{k % 10}", linestyle="-" if k < 10 else "--", label=name, **style)

@@ -115,7 +115,7 @@ class FormFactors:
         return self._native.reciprocity()[1]
 
     def by_object(self) -> pd.DataFrame:
-        """Form factors between whole objects, by their names: the share of what leaves the object of the row, evenly, that reaches that of the column.
+        """Form factors between whole objects, by their names: from that of the row to that of the column.
 
         `F_AB = Σ_i∈A A_i Σ_j∈B F_ij / A_A`. Objects of the same name count as one.
 

@@ -46,13 +46,9 @@ def from_arrays(
     surfaces = np.column_stack([object_of, shares, exitances, sides])
     kinds, kind_of = np.unique(surfaces, axis=0, return_inverse=True)
     owners = kinds[:, 0].astype(int)
-    kind_names = [
-        _kind_name(names[owner], k - int(np.searchsorted(owners, owner)), owners == owner) for k, owner in enumerate(owners)
-    ]
+    kind_names = [_kind_name(names[owner], k - int(np.searchsorted(owners, owner)), owners == owner) for k, owner in enumerate(owners)]
     materials = [_material(kind_name, kind) for kind_name, kind in zip(kind_names, kinds, strict=True)]
-    return _native.Scene.from_arrays(
-        name, points, corners.astype(np.uint32), kind_of.reshape(-1).astype(np.uint32), kind_names, materials
-    )
+    return _native.Scene.from_arrays(name, points, corners.astype(np.uint32), kind_of.reshape(-1).astype(np.uint32), kind_names, materials)
 
 
 def _array(name: str, values: npt.ArrayLike, kind: Any) -> npt.NDArray[Any]:
@@ -97,7 +93,8 @@ def _per_triangle(
     if values.shape != (len(object_of), 3):
         raise ParameterError.of(name, f"an array of shape {values.shape}", "a colour, one for each triangle, or a dict by object")
     kinds, kind_of = np.unique(values, axis=0, return_inverse=True)
-    return np.array([check(name, kind) for kind in kinds]).reshape(-1, 3)[kind_of.reshape(-1)]
+    checked = np.array([check(name, kind) for kind in kinds], dtype=float)
+    return np.asarray(checked.reshape(-1, 3)[kind_of.reshape(-1)])
 
 
 def _sides(two_sided: bool | Mapping[str, bool], names: list[str]) -> npt.NDArray[np.bool_]:
@@ -110,9 +107,7 @@ def _sides(two_sided: bool | Mapping[str, bool], names: list[str]) -> npt.NDArra
 def _check_names(parameter: str, given: Mapping[str, Any], names: list[str]) -> None:
     for name in given:
         if name not in names:
-            raise UnknownName(
-                f"{parameter}: there is no object called '{name}'; there are {', '.join(names)}", "object", name, names[0]
-            )
+            raise UnknownName(f"{parameter}: there is no object called '{name}'; there are {', '.join(names)}", "object", name, names[0])
 
 
 def _kind_name(name: str, k: int, same: npt.NDArray[np.bool_]) -> str:
@@ -124,9 +119,12 @@ def _material(name: str, kind: npt.NDArray[np.float64]) -> str:
     return json.dumps(known | {"reflectivity_texture": None, "emission_texture": None})
 
 
-def _joined(parts: Iterator[tuple[str, npt.NDArray[Any], npt.NDArray[Any]]]) -> dict[str, npt.NDArray[Any]]:
+def _joined(parts: Iterator[tuple[str, npt.NDArray[Any], npt.NDArray[Any]]]) -> dict[str, Any]:
     """Named meshes as the arrays of one."""
-    vertices, triangles, objects, count = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=str)], 0
+    vertices: list[npt.NDArray[Any]] = [np.empty((0, 3))]
+    triangles: list[npt.NDArray[Any]] = [np.empty((0, 3), dtype=np.int64)]
+    objects: list[npt.NDArray[Any]] = [np.empty(0, dtype=str)]
+    count = 0
     for name, points, corners in parts:
         vertices.append(np.asarray(points, dtype=float))
         triangles.append(np.asarray(corners, dtype=np.int64) + count)
@@ -155,9 +153,7 @@ def _trimeshes(mesh: Any, name: str) -> Iterator[tuple[str, Any, npt.NDArray[Any
     elif hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
         yield name, mesh, np.asarray(mesh.vertices)
     else:
-        raise UnreadableObject(
-            f"a {type(mesh).__name__} is no trimesh.Trimesh and no trimesh.Scene: it has no vertices and faces"
-        )
+        raise UnreadableObject(f"a {type(mesh).__name__} is no trimesh.Trimesh and no trimesh.Scene: it has no vertices and faces")
 
 
 def _face_colors(mesh: Any) -> npt.NDArray[np.float64]:

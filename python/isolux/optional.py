@@ -18,7 +18,7 @@ def needed(package: str, what: str) -> ModuleType:
     try:
         return importlib.import_module(package)
     except ImportError as error:
-        name = package.split(".")[0]
+        name = package.partition(".")[0]
         raise MissingPackage(f"{what} needs the package {name}: pip install {name}", name) from error
 
 

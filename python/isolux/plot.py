@@ -57,8 +57,8 @@ def plot_solution(
         colors: a colour map of Matplotlib.
         camera: name or number of a camera of the scene; its first, or a view of the whole scene, if it is left out.
         width, height: of the picture in pixels.
-        backend: "pyvista" can be turned round, "matplotlib" is a picture through the camera; the first of them that is there, or "matplotlib" if
-            there is an `ax`.
+        backend: "pyvista" can be turned round, "matplotlib" is a picture through the camera; the first of them that is
+            there, or "matplotlib" if there is an `ax`.
         ax: axes of Matplotlib to draw into.
 
     Returns:
@@ -86,14 +86,10 @@ def _values(solution: Solution, quantity: Quantity) -> tuple[npt.NDArray[np.floa
     if not isinstance(quantity, str):
         values = np.asarray(quantity, dtype=float)
         if values.shape != (len(solution),):
-            raise ParameterError.of(
-                "quantity", f"an array of shape {values.shape}", f"a number for each element, shape ({len(solution)},)"
-            )
+            raise ParameterError.of("quantity", f"an array of shape {values.shape}", f"a number for each element, shape ({len(solution)},)")
         return values, "value"
     if quantity not in LABELS:
-        raise UnknownName(
-            f"there is no quantity called '{quantity}'; there are {', '.join(LABELS)}", "quantity", quantity, "irradiance"
-        )
+        raise UnknownName(f"there is no quantity called '{quantity}'; there are {', '.join(LABELS)}", "quantity", quantity, "irradiance")
     irradiance, error = luminance(solution.irradiance), luminance(solution.std_error)
     with np.errstate(divide="ignore", invalid="ignore"):
         known = {
@@ -160,14 +156,15 @@ def _picture(
     problem: Problem, paint: Any, values: npt.NDArray[np.float64], camera: str | int | None, size: tuple[int, int | None]
 ) -> npt.NDArray[np.float64]:
     """Red, green and blue of every pixel; white where there is nothing."""
-    width, height = (None if n is None else n * SUPERSAMPLING for n in size)
+    width, height = size[0] * SUPERSAMPLING, None if size[1] is None else size[1] * SUPERSAMPLING
     seen = problem._native.seen(None if camera is None else str(camera), width, height)
     rows, columns = (n // SUPERSAMPLING * SUPERSAMPLING for n in seen.shape)
     seen = seen[:rows, :columns]
     colors = np.asarray(paint(values))[:, :3]
     colors[~np.isfinite(values)] = 0.75
     pixels = np.where((seen < 0)[..., None], 1.0, colors[np.maximum(seen, 0)])
-    return pixels.reshape(rows // SUPERSAMPLING, SUPERSAMPLING, columns // SUPERSAMPLING, SUPERSAMPLING, 3).mean(axis=(1, 3))
+    blocks = pixels.reshape(rows // SUPERSAMPLING, SUPERSAMPLING, columns // SUPERSAMPLING, SUPERSAMPLING, 3)
+    return np.asarray(blocks.mean(axis=(1, 3)))
 
 
 def _pyvista(
@@ -188,15 +185,13 @@ def _pyvista(
     bar = {"title": label + "\n", "title_font_size": 16, "label_font_size": 14, **place, **looks}
     mesh = to_pyvista(problem, {label: values})
     plotter.set_background("white")
-    plotter.add_mesh(
-        mesh, scalars=label, clim=limits, log_scale=log, cmap=colors, lighting=False, culling="back", scalar_bar_args=bar
-    )
+    plotter.add_mesh(mesh, scalars=label, clim=limits, log_scale=log, cmap=colors, lighting=False, culling="back", scalar_bar_args=bar)
     cameras = problem.scene.cameras
     if camera is not None or len(cameras):
         chosen = cameras[0 if camera is None else camera]
         known = chosen._read()
-        place, forward = np.array(known["position"]), np.array(known["forward"])
-        plotter.camera_position = [place, place + forward, known["up"]]
+        position, forward = np.array(known["position"]), np.array(known["forward"])
+        plotter.camera_position = [position, position + forward, known["up"]]
         angle = known["projection"].get("Perspective", {}).get("vertical_angle")
         if angle is not None:
             plotter.camera.view_angle = np.degrees(angle)
@@ -205,7 +200,9 @@ def _pyvista(
 
 
 def to_pyvista(problem: Problem, values: dict[str, npt.NDArray[Any]]) -> Any:
-    """The elements as a `pyvista.PolyData`, with `values` of shape (n,) or (n, 3) as cell data; an element of many triangles has many cells.
+    """The elements as a `pyvista.PolyData`, with `values` of shape (n,) or (n, 3) as cell data.
+
+    An element of many triangles has many cells.
 
     Raises:
         MissingPackage: PyVista is not installed.

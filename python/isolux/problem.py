@@ -135,9 +135,7 @@ class Problem:
         """Uniform points of elements, from two numbers each; points [m] and unit normals there, (k, 3) each. See `local_lines`."""
         return self._native.points(_integers(elements), _floats(samples))
 
-    def trace(
-        self, origins: npt.ArrayLike, directions: npt.ArrayLike, *, leaving: npt.ArrayLike | None = None
-    ) -> tuple[Integers, Floats]:
+    def trace(self, origins: npt.ArrayLike, directions: npt.ArrayLike, *, leaving: npt.ArrayLike | None = None) -> tuple[Integers, Floats]:
         """What rays meet first. The interpreter is let go meanwhile, and all cores help.
 
         Args:
@@ -178,16 +176,12 @@ class Problem:
         given = np.ascontiguousarray(irradiance, dtype=np.float32)
         stack = given[None] if given.ndim == 2 else given
         if stack.ndim != 3 or stack.shape[1:] != (len(self), 3):
-            raise ParameterError.of(
-                "irradiance", f"an array of shape {given.shape}", f"shape ({len(self)}, 3) or (r, {len(self)}, 3)"
-            )
+            raise ParameterError.of("irradiance", f"an array of shape {given.shape}", f"shape ({len(self)}, 3) or (r, {len(self)}, 3)")
         return Solution(_native.Solution.of_independent(self._native, stack, rays, method, seed), problem=self)
 
     def __repr__(self) -> str:
         emitted = float(luminance(self.emission) @ self.areas)
-        return (
-            f"<Problem {self._native.scene_name!r}: {len(self):,} elements, {self.areas.sum():.4g} m², {emitted:.4g} lm emitted>"
-        )
+        return f"<Problem {self._native.scene_name!r}: {len(self):,} elements, {self.areas.sum():.4g} m², {emitted:.4g} lm emitted>"
 
 
 Scenelike: TypeAlias = Scene | Problem | str | os.PathLike[str]

@@ -77,7 +77,7 @@ class Scene:
             UnknownName: a dict names an object that is not there.
             InvalidScene: a vertex is not finite, or not there.
         """
-        surfaces = {"objects": objects, "reflectivity": reflectivity, "emission": emission, "two_sided": two_sided}
+        surfaces: dict[str, Any] = {"objects": objects, "reflectivity": reflectivity, "emission": emission, "two_sided": two_sided}
         return cls(meshes.from_arrays(vertices, triangles, name=name, **surfaces))
 
     @classmethod
@@ -161,7 +161,7 @@ class Scene:
         known = {"name": name, "reflectivity": rgb((0, 0, 0)), "emission": rgb((0, 0, 0)), "two_sided": two_sided}
         part = self._add("materials", known | {"reflectivity_texture": None, "emission_texture": None})
         material = Material(self._native, part)
-        material.reflectivity, material.emission = reflectivity, emission  # type: ignore[assignment]
+        material.reflectivity, material.emission = reflectivity, emission
         return material
 
     def add_point_light(self, name: str, position: npt.ArrayLike, intensity: Color) -> Light:

@@ -284,7 +284,7 @@ class Solution:
     @property
     def light_groups(self) -> dict[str, tuple[float, float, float]]:
         """The factor of each light group, red, green and blue, by its name; empty if all light was solved together."""
-        return dict(zip(self._native.groups, (tuple(factor) for factor in self._native.factors), strict=True))
+        return dict(zip(self._native.groups, ((r, g, b) for r, g, b in self._native.factors), strict=True))
 
     def mix(self, factors: Mapping[str, Color]) -> Solution:
         """The same with lamps dimmed and coloured, without solving again; error bars are right for any factors.
@@ -330,9 +330,9 @@ def _estimate(mean: float, error: dict[str, float] | None) -> Estimate:
 def _picture(
     camera: str | int | None, width: int, height: int | None, samples: int, exposure: float | None, smooth: Smooth
 ) -> dict[str, Any]:
-    for name, number in {"width": width, "height": height, "samples": samples}.items():
+    for what, number in {"width": width, "height": height, "samples": samples}.items():
         if number is not None and not 0 < number < 2**31:
-            raise ParameterError.of(name, number, "a number above 0")
+            raise ParameterError.of(what, number, "a number above 0")
     if exposure is not None and not abs(exposure) <= 100:
         raise ParameterError.of("exposure", exposure, "stops between -100 and 100")
     name = None if camera is None else str(camera)
@@ -376,9 +376,7 @@ class Comparison:
 
     def __str__(self) -> str:
         worst = max(self.z, key=lambda name: abs(self.z[name]), default=None)
-        means = (
-            "" if worst is None else f"; of all means that on '{worst}' differs most, by {self.z[worst]:.2f} standard deviations"
-        )
+        means = "" if worst is None else f"; of all means that on '{worst}' differs most, by {self.z[worst]:.2f} standard deviations"
         return f"RMS difference {100 * self.rms:.3g} %, {100 * self.expected_rms:.3g} % is to be expected{means}"
 
 

@@ -118,9 +118,7 @@ def _request(**options: Any) -> _native.Request:
     return _native.Request({"method": None} | given)
 
 
-def _problem(
-    scene: Scenelike, request: _native.Request, elements: float | None, max_edge: float | None, contacts: bool
-) -> Problem:
+def _problem(scene: Scenelike, request: _native.Request, elements: float | None, max_edge: float | None, contacts: bool) -> Problem:
     check_size(elements, max_edge)
     if not isinstance(scene, Problem):
         return Problem._of(request.problem(as_scene(scene)._native, whole(elements), max_edge, contacts))

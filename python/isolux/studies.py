@@ -137,9 +137,7 @@ class Study:
 
         known = {one["file"]: one for one in self.plots}
         if plot is not None and plot not in known:
-            raise UnknownName(
-                f"there is no plot called '{plot}'; there are {', '.join(known)}", "plot", plot, next(iter(known), "")
-            )
+            raise UnknownName(f"there is no plot called '{plot}'; there are {', '.join(known)}", "plot", plot, next(iter(known), ""))
         spec = self.plots[0] if plot is None else known[plot]
         table = self.to_dataframe()
         if scene is not None:

@@ -148,9 +148,7 @@ def _box(reflectivity: dict[str, npt.NDArray[Any]], emission: dict[str, npt.NDAr
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (0, 2) for z in (-1, 1)], dtype=float)
     faces = [[0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [0, 2, 3, 1], [4, 5, 7, 6]]
     triangles = np.array([half for a, b, c, d in faces for half in ([a, b, c], [a, c, d])])
-    return Scene.from_arrays(
-        corners, triangles, objects=np.repeat(WALLS, 2), reflectivity=reflectivity, emission=emission, name="cube"
-    )
+    return Scene.from_arrays(corners, triangles, objects=np.repeat(WALLS, 2), reflectivity=reflectivity, emission=emission, name="cube")
 
 
 def _by_form_factors(problem: Problem) -> npt.NDArray[np.float64]:
@@ -240,11 +238,7 @@ def _threads(make_solver: MakeSolver, seed: int) -> Finding:
             backwards.absorb(problem, parts[piece])
     last = np.asarray(solution_of(backwards, problem).irradiance)
     same = bool((alone == several).all() and (alone == last).all())
-    what = (
-        "the same bits"
-        if same
-        else f"irradiances differ by up to {max(abs(alone - several).max(), abs(alone - last).max()):.3g} lx"
-    )
+    what = "the same bits" if same else f"irradiances differ by up to {max(abs(alone - several).max(), abs(alone - last).max()):.3g} lx"
     return Finding("any order and number of threads", same, what, None)
 
 

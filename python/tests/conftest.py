@@ -26,7 +26,8 @@ def cube() -> isolux.Scene:
 def box(**surfaces: object) -> isolux.Scene:
     """The inside of a unit cube, made of arrays."""
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
-    faces = {"floor": [0, 1, 5, 4], "ceiling": [2, 6, 7, 3], "back": [0, 4, 6, 2], "front": [1, 3, 7, 5], "left": [0, 2, 3, 1], "right": [4, 5, 7, 6]}
-    triangles = [half for a, b, c, d in faces.values() for half in ([a, b, c], [a, c, d])]
-    known = {"objects": np.repeat(list(faces), 2), "emission": {"ceiling": 100.0}} | surfaces
+    walls = ["floor", "ceiling", "back", "front", "left", "right"]
+    faces = [[0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [0, 2, 3, 1], [4, 5, 7, 6]]
+    triangles = [half for a, b, c, d in faces for half in ([a, b, c], [a, c, d])]
+    known = {"objects": np.repeat(walls, 2), "emission": {"ceiling": 100.0}} | surfaces
     return isolux.Scene.from_arrays(corners, triangles, **known)  # type: ignore[arg-type]

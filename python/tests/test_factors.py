@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from conftest import box
 
 import isolux
+from conftest import box
 
 pytest.importorskip("scipy")
 pytest.importorskip("pandas")

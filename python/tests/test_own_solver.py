@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from conftest import ROOT, box
 
 import isolux
+from conftest import ROOT, box
 from isolux.testing import check_solver
 
 
@@ -74,8 +74,12 @@ def test_the_example_is_a_solver_as_it_should_be() -> None:
 
 @pytest.mark.parametrize(
     ("mutant", "seen_by"),
-    [(ReflectsTwice, "furnace"), (ForgetsTheCosine, "black cube"), (LosesSomeLight, "energy balance"),
-     (DrawsWhileItComputes, "any order and number of threads")],
+    [
+        (ReflectsTwice, "furnace"),
+        (ForgetsTheCosine, "black cube"),
+        (LosesSomeLight, "energy balance"),
+        (DrawsWhileItComputes, "any order and number of threads"),
+    ],
 )
 def test_planted_faults_are_caught(mutant: Any, seen_by: str) -> None:
     with pytest.raises(isolux.SolverFault) as fault:
@@ -105,13 +109,17 @@ def test_lines_go_where_form_factors_say() -> None:
     origins, directions = problem.local_lines(source, samples)
     assert np.linalg.norm(directions, axis=1) == pytest.approx(1, abs=1e-5) and (directions[:, 1] > 0).all()
     assert abs(origins[:, 1]).max() < 1e-5
-    points, normals = problem.points(floor, np.full((len(floor), 2), 0.5))
+    _, normals = problem.points(floor, np.full((len(floor), 2), 0.5))
     assert normals == pytest.approx(np.tile([0.0, 1.0, 0.0], (len(floor), 1)))
     element, distance = problem.trace([[0.5, 0.5, 0.5], [0.5, 0.5, 0.5], [0.5, 5, 0.5]], [[0, 9, 0], [0, -1, 0], [0, 1, 0]])
     assert distance[:2] == pytest.approx(0.5) and np.isinf(distance[2]) and element[2] == -1 and element[0] != element[1]
     assert problem.trace([[0.5, 2, 0.5]], [[0, -1, 0]])[0][0] == -2, "the back of the ceiling is black"
-    for wrong in (lambda: problem.shoot([99], [[0, 0, 0, 0]]), lambda: problem.shoot([0], [[0, 0, 0, 2]]),
-                  lambda: problem.trace([[0, 0, 0]], [[0, 0, 0]]), lambda: problem.shoot([0.5], [[0, 0, 0, 0]])):
+    for wrong in (
+        lambda: problem.shoot([99], [[0, 0, 0, 0]]),
+        lambda: problem.shoot([0], [[0, 0, 0, 2]]),
+        lambda: problem.trace([[0, 0, 0]], [[0, 0, 0]]),
+        lambda: problem.shoot([0.5], [[0, 0, 0, 0]]),
+    ):
         with pytest.raises(isolux.ParameterError):
             wrong()
 

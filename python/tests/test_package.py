@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
 
 import isolux
+from conftest import ROOT
 from isolux import errors
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import box
 
 import isolux
+from conftest import box
 
 
 def test_built_in_scenes_come_by_name_and_say_what_is_in_them() -> None:

@@ -42,7 +42,7 @@ def test_every_format_is_written_and_a_solution_comes_back(cornell: isolux.Solut
     pandas = pytest.importorskip("pandas")
     table = pandas.read_csv(tmp_path / "a.csv")
     ours = cornell.to_dataframe()
-    lux = [name for name in table.columns if name.startswith("irradiance_luminance")][0]
+    lux = next(name for name in table.columns if name.startswith("irradiance_luminance"))
     assert table[lux].to_numpy() == pytest.approx(ours["irradiance_luminance"].to_numpy(), rel=1e-4)
     with pytest.raises(isolux.UnknownFormat, match=r"\.npz"):
         cornell.save(tmp_path / "a.docx")

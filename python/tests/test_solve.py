@@ -1,5 +1,6 @@
 """Solves: exact answers, the bits of the command line, accuracies, interruptions."""
 
+import itertools
 import json
 import os
 import signal
@@ -12,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import box
 
 import isolux
+from conftest import box
 from isolux import _native
 
 
@@ -43,8 +44,13 @@ def test_python_and_the_command_line_compute_the_same_bits(tmp_path: Path) -> No
 
 def test_arrays_are_views_on_one_memory_that_nobody_can_change(cornell: isolux.Solution) -> None:
     n = len(cornell)
-    for values, shape in [(lambda: cornell.irradiance, (n, 3)), (lambda: cornell.std_error, (n, 3)), (lambda: cornell.radiosity, (n, 3)),
-                          (lambda: cornell.areas, (n,)), (lambda: cornell.problem.normals, (n, 3))]:
+    for values, shape in [
+        (lambda: cornell.irradiance, (n, 3)),
+        (lambda: cornell.std_error, (n, 3)),
+        (lambda: cornell.radiosity, (n, 3)),
+        (lambda: cornell.areas, (n,)),
+        (lambda: cornell.problem.normals, (n, 3)),
+    ]:
         array = values()
         assert array.shape == shape and array.dtype == np.float32 and array.base is not None and array.flags.c_contiguous
         assert np.shares_memory(array, values()) and array.ctypes.data == values().ctypes.data
@@ -128,7 +134,7 @@ def test_somebody_who_watches_sees_progress_and_can_end_it() -> None:
 
     solution = isolux.solve("office", elements=20_000, rays=1e12, callback=watch)
     assert solution.ended == "stopped" and not solution.interrupted and 100_000 < solution.rays < 1e10
-    assert all(a.rays <= b.rays for a, b in zip(seen, seen[1:], strict=False)) and seen[-1].rays_in_all
+    assert all(a.rays <= b.rays for a, b in itertools.pairwise(seen)) and seen[-1].rays_in_all
 
     def fails(progress: isolux.SolveProgress) -> bool:
         raise RuntimeError("no more")
