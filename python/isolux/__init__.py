@@ -15,7 +15,9 @@ from __future__ import annotations
 from typing import Literal
 
 from . import _native, errors, testing
+from .check import Finding, Report
 from .colors import luminance
+from .comparing import Comparison, compare, merge
 from .convergence import Convergence, convergence
 from .driver import Solver, run
 from .errors import (
@@ -45,12 +47,13 @@ from .errors import (
 )
 from .estimate import Estimate
 from .factors import FormFactors, form_factors
+from .light import Balance, ObjectLight, Provenance
 from .parts import Camera, Light, Material, Object
 from .plot import plot_solution, to_pyvista
 from .problem import Problem
 from .progress import SolveProgress
-from .scene import Finding, Report, Scene, load
-from .solution import Balance, Comparison, ObjectLight, Provenance, Solution, compare, merge, open
+from .scene import Scene, load
+from .solution import Solution, open
 from .solving import solve
 from .studies import Slope, Study, Verdict, study
 

@@ -27,6 +27,8 @@ LABELS = {
 }
 BRIGHT = 0.95
 """Share of the area whose values the legend covers: lamps and the elements beside them would leave no colours for the rest."""
+DECADES = 1000
+"""Most that logarithmic colours span: the insides of things are as dark as one likes."""
 SUPERSAMPLING = 3
 """Rays along each edge of a pixel: colours, not numbers, are averaged at the edges of things."""
 
@@ -112,7 +114,7 @@ def _limits(values: npt.NDArray[np.float64], areas: npt.NDArray[Any], log: bool)
     high = float(sorted_values[min(np.searchsorted(share, BRIGHT), len(order) - 1)])
     low = float(sorted_values[np.searchsorted(share, 1 - BRIGHT)])
     if log:
-        low = low if low > 0 else high / 1000
+        low = max(low, high / DECADES)
         return (low, high) if 0 < low < high else (1e-3, 1.0)
     low = min(low, 0.0)
     return low, high if high > low else low + 1.0
@@ -180,9 +182,10 @@ def _pyvista(
     pyvista = needed("pyvista", "a plot that can be turned round")
     width, height = size
     plotter = pyvista.Plotter(window_size=(width, height or round(width * 9 / 16)))
-    place = {"vertical": True, "position_x": 0.9, "position_y": 0.08, "width": 0.08, "height": 0.84}
-    looks = {"color": "black", "fill": True, "background_color": "white", "n_labels": 6, "fmt": "%.4g"}
-    bar = {"title": label + "\n", "title_font_size": 16, "label_font_size": 14, **place, **looks}
+    unit = label[label.find("[") + 1 :].rstrip("]")
+    place = {"vertical": True, "position_x": 0.85, "position_y": 0.06, "width": 0.13, "height": 0.88}
+    looks = {"color": "black", "fill": True, "background_color": "white", "n_labels": 6, "fmt": f"%.4g {unit.replace('%', '%%')}"}
+    bar = {"title": " ", "label_font_size": 14, **place, **looks}
     mesh = to_pyvista(problem, {label: values})
     plotter.set_background("white")
     plotter.add_mesh(mesh, scalars=label, clim=limits, log_scale=log, cmap=colors, lighting=False, culling="back", scalar_bar_args=bar)

@@ -31,20 +31,20 @@ class SolveProgress:
     seconds: float
     """Time since the solve began [s]."""
 
-    def share(self, limit: float | None = None) -> float:
-        """About how much of the work is done, between 0 and 1; `limit` is the time it may take [s]."""
+    def share(self, error: float | None = None, time: float | None = None) -> float:
+        """About how much of the work is done, between 0 and 1, if this error and this time [s] were asked for."""
         shares = [0.0]
-        if self.rays_in_all:
+        if error is None and self.rays_in_all:
             shares.append(self.rays / self.rays_in_all)
         if self.excess:
             # Half the error takes four times the rays.
             shares.append(self.excess**-2)
-        if limit:
-            shares.append(self.seconds / limit)
+        if time is not None:
+            shares.append(self.seconds / time)
         return min(max(shares), 1.0)
 
     def __str__(self) -> str:
-        rays = f"{self.rays / 1e6:.3g}M rays"
+        rays = f"{self.rays / 1e6:.3g}M rays" if self.rays >= 1e6 else f"{self.rays / 1e3:.0f}k rays"
         return rays if self.error is None else f"{rays}, error {100 * self.error:.2g} %"
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -16,67 +15,13 @@ from . import _native, plot, tables
 from .colors import Color, Floats, color, luminance
 from .errors import ParameterError, UnknownName
 from .estimate import Estimate
+from .light import Balance, ObjectLight, Provenance
 from .problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Smooth = Literal["pictures", "all", "none"]
-
-
-@dataclass(frozen=True)
-class Balance:
-    """Where the emitted light went [lm, luminance]: `emitted = absorbed + escaped + back_face + unshot`."""
-
-    emitted: float
-    """Sent out by all sources."""
-    absorbed: float
-    """Absorbed by surfaces."""
-    escaped: float
-    """Left the scene without meeting anything."""
-    back_face: float
-    """Lost on the backs of one-sided surfaces: gaps in the model, or flipped normals."""
-    unshot: float
-    """Not yet followed to its end."""
-    residual: float
-    """What is missing from the balance, relative to the emitted: rounding."""
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """Where a solution comes from: enough to compute it again, bit for bit."""
-
-    scene: str
-    scene_hash: str
-    method: str
-    parameters: dict[str, str]
-    seed: int
-    version: str
-
-
-@dataclass(frozen=True)
-class ObjectLight:
-    """The light on one object; everything is luminance."""
-
-    name: str
-    elements: int
-    area: float
-    """[m²], both sides of two-sided surfaces counted."""
-    mean: Estimate
-    """Mean irradiance by area [lux], with its error bar."""
-    min: float
-    """The least irradiance of an element [lux]."""
-    max: float
-    """The greatest irradiance of an element [lux]."""
-    emitted: float
-    """Flux that it sends out by itself [lm]."""
-    incident: float
-    """Flux that falls on it [lm]."""
-    reflected: float
-    """Flux that it reflects [lm]."""
-
-    def __str__(self) -> str:
-        return f"{self.name}: {self.mean} lx on {self.area:.4g} m²"
 
 
 class Solution:
@@ -210,8 +155,8 @@ class Solution:
         """A table (pandas).
 
         Args:
-            by: "element" has a row for each element, with the columns of the `.csv` file; "object" one for each object: area [m²], mean
-                irradiance with standard error and 95 % margin, min, max [lux], and flux [lm].
+            by: "element" has a row for each element, with the columns of the `.csv` file but for the side; "object" one for each object:
+                area [m²], mean irradiance with standard error and 95 % margin, min, max [lux], and flux [lm].
 
         Raises:
             MissingPackage: pandas is not installed.
@@ -347,50 +292,3 @@ def open(path: str | os.PathLike[str]) -> Solution:
         InvalidFile: it is no such file, or damaged.
     """
     return Solution(_native.Solution.open(os.fspath(path)))
-
-
-def merge(solutions: Sequence[Solution]) -> Solution:
-    """One better solution of several of the same problem and method with different seeds, weighted by what they are worth.
-
-    Raises:
-        NotMergeable: they are of different problems or methods, of equal seeds, or have no error bars.
-    """
-    problem = solutions[0].problem if solutions else None
-    return Solution(_native.Solution.merge([solution._native for solution in solutions]), problem=problem)
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """How two solutions of the same problem differ, and whether their error bars explain it."""
-
-    rms: float
-    """RMS difference of the irradiance by area, relative to the mean of both."""
-    expected_rms: float
-    """What the standard errors of independent solutions let expect of it; `nan` if they are not known."""
-    power: tuple[float, float]
-    """Flux that leaves all surfaces [lm], in each of them."""
-    z: dict[str, float]
-    """Difference of the mean irradiances over its standard deviation, of each object; "scene" is the whole."""
-    beyond_3: float
-    """Share of the elements that differ by more than three standard deviations; 0.0027 if the differences are normal."""
-
-    def __str__(self) -> str:
-        worst = max(self.z, key=lambda name: abs(self.z[name]), default=None)
-        means = "" if worst is None else f"; of all means that on '{worst}' differs most, by {self.z[worst]:.2f} standard deviations"
-        return f"RMS difference {100 * self.rms:.3g} %, {100 * self.expected_rms:.3g} % is to be expected{means}"
-
-
-def compare(a: Solution, b: Solution) -> Comparison:
-    """How two solutions of the same problem differ.
-
-    Raises:
-        NotComparable: they are of different scenes, or cut into different elements.
-    """
-    known = json.loads(a._native.compare(b._native))
-    means = {one["name"]: one["z"] for one in known["objects"]}
-    if known["mean"] is not None:
-        means = {"scene": known["mean"]["z"]} | means
-    scores = known["z"] or {}
-    number = {key: math.nan if known[key] is None else float(known[key]) for key in ("rms", "expected_rms")}
-    power = (float(known["power"][0]), float(known["power"][1]))
-    return Comparison(**number, power=power, z=means, beyond_3=float(scores.get("beyond_3", math.nan)))

@@ -85,7 +85,7 @@ def solve(
 
         def watch(*now: Any) -> bool:
             known = SolveProgress(*now)
-            shown.show(known.share(time), str(known))
+            shown.show(known.share(error, time), str(known))
             return bool(callback(known)) if callback else False
 
         native, ended, bias = _native.solve(problem._native, request, limits, _groups(light_groups), threads, watch)

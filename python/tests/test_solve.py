@@ -171,6 +171,16 @@ def test_progress_is_shown_with_and_without_tqdm(capsys: pytest.CaptureFixture[s
     assert "solving:" in capsys.readouterr().err
 
 
+def test_how_far_a_solve_is() -> None:
+    def now(rays: int, in_all: int | None, excess: float | None) -> isolux.SolveProgress:
+        return isolux.SolveProgress("shooting", rays, in_all, None if excess is None else 0.1, excess, seconds=2.0)
+
+    assert now(50, 200, None).share() == 0.25
+    assert now(50, 200, None).share(error=0.1) == 0 and now(50, 200, 2.0).share(error=0.1) == 0.25
+    assert now(0, None, None).share(time=4) == 0.5 and now(0, None, 0.5).share(error=0.1) == 1
+    assert str(now(1_500_000, None, 2.0)) == "1.5M rays, error 10 %" and str(now(2000, None, None)) == "2k rays"
+
+
 def test_the_program_of_the_wheel_is_the_command_line() -> None:
     command = [sys.executable, "-m", "isolux.command_line"]
     listed = subprocess.run([*command, "list", "scenes"], capture_output=True, text=True, check=True)
