@@ -3,6 +3,7 @@
 #   make test    every test
 #   make viewer  the page for browsers, which isolux then writes; needs npm. Without it all else is built
 #   make test-viewer   tests of the page, in Chromium if it is there
+#   make test-python   those of the Python package: needs Python 3.10 or later, and is skipped without
 #   make bench   speed of the ray kernel and of global lines, into docs/performance.md
 #                EMBREE=1 puts Embree beside it, which needs Debian's libembree-dev (apt-get install libembree-dev)
 #   make studies                  the nine published experiments and the study of speed in full: two hours
@@ -17,7 +18,7 @@ ISOLUX = target/release/isolux
 
 STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count speed
 
-.PHONY: demo test bench lint build viewer test-viewer studies growth study-reference-rooms study-methods study-smoothing study-mesh study-clusters
+.PHONY: demo test test-python run-test-python bench lint build viewer test-viewer studies growth study-reference-rooms study-methods study-smoothing study-mesh study-clusters
 
 build: viewer
 	cargo build --release --locked
@@ -54,6 +55,26 @@ demo: build
 test: viewer
 	cargo test --release --locked --workspace
 	$(MAKE) --no-print-directory test-viewer
+	$(MAKE) test-python
+
+# The wheel is built and installed into an environment of its own, with the versions of python/constraints.txt.
+PYTHON = python3
+PYTHON_ENV = target/python
+PYTHON_NEEDS = maturin mypy numpy matplotlib pandas pandas-stubs pytest pyvista ruff scipy tqdm trimesh
+
+test-python:
+	@if $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then $(MAKE) run-test-python; \
+	else echo "SKIPPED: the tests of the Python package need Python 3.10 or later; name one with PYTHON=..."; fi
+
+run-test-python:
+	test -x $(PYTHON_ENV)/bin/python || $(PYTHON) -m venv $(PYTHON_ENV)
+	$(PYTHON_ENV)/bin/python -m pip install --quiet --disable-pip-version-check -c python/constraints.txt $(PYTHON_NEEDS)
+	rm -rf $(PYTHON_ENV)/wheel
+	$(PYTHON_ENV)/bin/maturin build --release --locked --quiet --interpreter $(PYTHON_ENV)/bin/python --out $(PYTHON_ENV)/wheel
+	$(PYTHON_ENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall $(PYTHON_ENV)/wheel/*.whl
+	$(PYTHON_ENV)/bin/ruff check --quiet python examples
+	$(PYTHON_ENV)/bin/ruff format --quiet --check python examples
+	$(PYTHON_ENV)/bin/python -m pytest --quiet python/tests
 
 bench:
 	BENCH_REPORT=$(CURDIR)/docs/performance.md BENCH_DATE=$$(date +%F) CRITERION_HOME=$(CURDIR)/target/criterion \

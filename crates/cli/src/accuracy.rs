@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::numbers::{decimals_for, parse_share, percent};
 use isolux_core::scene::Scene;
-use isolux_core::{Accuracy, Certainty, Error, Problem, Quantity, Solution};
+use isolux_core::{Accuracy, Certainty, Problem, Quantity, Solution};
 
 /// What a bound holds with unless said otherwise, and everywhere where nobody asks.
 pub const CONFIDENCE: f64 = 0.95;
@@ -57,26 +57,15 @@ impl AccuracyArguments {
         let Some(error) = self.error else { return Ok(None) };
         let of = match &self.error_of {
             Of::Whole(quantity) => *quantity,
-            Of::Object(name) => Quantity::Object(object_called(scene, name)?),
+            Of::Object(name) => object_called(scene, name)?,
         };
         Ok(Some(Accuracy { error, confidence: self.confidence, of }))
     }
 }
 
-fn object_called(scene: &Scene, name: &str) -> Result<u32, Failure> {
-    let mut found = (0..).zip(&scene.objects).filter(|(_, object)| object.name == name).map(|(k, _)| k);
-    match (found.next(), found.count()) {
-        (Some(object), 0) => Ok(object),
-        (Some(_), others) => {
-            let what = format!("--error-of object:{name}: {} objects have this name", others + 1);
-            Err(Failure::usage(what).with_help("give each a name of its own, or ask for --error-of rms"))
-        }
-        (None, _) => {
-            let names = scene.objects.iter().map(|object| object.name.as_str());
-            let error = Error::unknown_name("object", name, names);
-            Err(Failure::usage(format!("--error-of: {error}")).with_help("'isolux scene' lists the objects"))
-        }
-    }
+fn object_called(scene: &Scene, name: &str) -> Result<Quantity, Failure> {
+    let failed = |error| Failure::usage(format!("--error-of: {error}")).with_help("'isolux scene' lists the objects");
+    Quantity::of_object(scene, name).map_err(failed)
 }
 
 /// The error that a solution has, beside the one that was asked for.
@@ -156,10 +145,10 @@ mod tests {
     #[test]
     fn objects_that_are_not_there_or_there_twice_are_refused() {
         let mut scene = builtin("cornell-box").unwrap();
-        assert_eq!(object_called(&scene, "floor").ok(), Some(0));
+        assert_eq!(object_called(&scene, "floor").ok(), Some(Quantity::Object(0)));
         let message = |scene: &Scene, name| object_called(scene, name).unwrap_err().what;
         assert!(message(&scene, "flor").contains("did you mean 'floor'"));
         scene.objects[1].name = "floor".to_owned();
-        assert!(message(&scene, "floor").contains("2 objects"));
+        assert!(message(&scene, "floor").contains("several objects"));
     }
 }

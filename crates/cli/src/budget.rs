@@ -27,11 +27,6 @@ impl BudgetArguments {
     /// # Errors
     /// Those of [`AccuracyArguments::accuracy`].
     pub fn budget(&self, scene: &Scene) -> Result<Option<Budget>, Failure> {
-        Ok(match (self.accuracy.accuracy(scene)?, self.rays, self.time) {
-            (Some(accuracy), most_rays, _) => Some(Budget::Accuracy { accuracy, most_rays }),
-            (None, Some(rays), _) => Some(Budget::Rays(rays)),
-            (None, None, Some(_)) => Some(Budget::Endless),
-            (None, None, None) => None,
-        })
+        Ok(Budget::asked(self.accuracy.accuracy(scene)?, self.rays, self.time.is_some()))
     }
 }

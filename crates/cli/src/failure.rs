@@ -47,7 +47,12 @@ impl From<isolux_io::Error> for Failure {
 
 impl From<isolux_core::Error> for Failure {
     fn from(error: isolux_core::Error) -> Failure {
-        Failure::usage(error.to_string())
+        match error {
+            isolux_core::Error::Unused { method, option, why } => {
+                Failure::usage(format!("{method} has no use for --{option}")).with_help(why)
+            }
+            error => Failure::usage(error.to_string()),
+        }
     }
 }
 

@@ -1,15 +1,12 @@
 //! The method of `isolux solve`: a name, and the axes by which it may differ from what has that name.
 
-use crate::failure::Failure;
-use isolux_core::Error;
 use isolux_core::choice::{Choice, TableEntry};
-use isolux_core::form_factors::{self, WAYS};
+use isolux_core::form_factors::WAYS;
 use isolux_core::sampling::address::Address;
 use isolux_core::sampling::{self, SequenceName};
-use isolux_core::solvers::deterministic::{self, DETERMINISTIC};
+use isolux_core::solvers::Asked;
 use isolux_core::solvers::monte_carlo::axes::{Axis, Direction, Estimator, FirstShot, Lines, Survival, Walk};
 use isolux_core::solvers::monte_carlo::orders::{self, OrderName};
-use isolux_core::solvers::monte_carlo::{METHODS, Method};
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Method")]
@@ -73,93 +70,25 @@ pub struct MethodArguments {
 }
 
 impl MethodArguments {
-    /// The name of the method from which the axes differ. Sample numbers suit all.
-    fn name(&self) -> &str {
-        let other = self.moves_another_axis();
-        self.method.as_deref().unwrap_or(if other { "stochastic-jacobi" } else { METHODS[0].name })
-    }
-
-    /// The deterministic method that is asked for, if it is one.
-    pub fn deterministic(&self) -> Option<&'static deterministic::Entry> {
-        DETERMINISTIC.iter().find(|entry| entry.name == self.name())
-    }
-
-    /// What a deterministic method is told.
-    ///
-    /// # Errors
-    /// A failure if an axis of Monte Carlo is asked for as well, or a setting that does not concern this method.
-    pub fn deterministic_settings(
-        &self,
-        entry: &deterministic::Entry,
-        seed: u64,
-    ) -> Result<deterministic::Settings, Failure> {
-        if self.moves_an_axis() {
-            let what =
-                format!("{} draws no random numbers: it has none of the axes --sequence to --first-shot", entry.name);
-            return Err(Failure::usage(what).with_help("leave them out, or choose a method of Monte Carlo"));
-        }
-        self.refuse_settings_but(entry.uses)?;
-        let default = deterministic::Settings::default();
-        Ok(deterministic::Settings {
-            way: self.factors.map_or(default.way, str::to_owned),
-            factors: form_factors::Settings { seed, ..default.factors },
+    /// What is asked for, of the method.
+    pub fn asked(&self) -> Asked {
+        Asked {
+            method: self.method.clone(),
+            sequence: self.sequence,
+            order: self.order,
+            lines: self.lines,
+            walk: self.walk,
+            address: self.address,
+            estimator: self.estimator,
+            direction: self.direction,
+            survival: self.survival,
+            first_shot: self.first_shot,
+            factors: self.factors.map(str::to_owned),
+            unshot: self.unshot,
             ambient: self.ambient,
-            unshot: self.unshot.unwrap_or(default.unshot),
-            link_power: self.link_power.unwrap_or(default.link_power),
-            ..default
-        })
-    }
-
-    /// An option that would be ignored is an error.
-    fn refuse_settings_but(&self, used: &[&str]) -> Result<(), Failure> {
-        let asked = [
-            ("factors", self.factors.is_some()),
-            ("unshot", self.unshot.is_some()),
-            ("ambient", self.ambient),
-            ("link-power", self.link_power.is_some()),
-        ];
-        match asked.into_iter().find(|(name, is_asked)| *is_asked && !used.contains(name)) {
-            Some((name, _)) => Err(Failure::usage(format!("{} has no use for --{name}", self.name()))
-                .with_help("leave it out; 'isolux solve --help' says whose it is")),
-            None => Ok(()),
+            link_power: self.link_power,
+            ..Asked::default()
         }
-    }
-
-    fn moves_an_axis(&self) -> bool {
-        self.sequence.is_some() || self.moves_another_axis()
-    }
-
-    /// Another axis than that of sample numbers.
-    fn moves_another_axis(&self) -> bool {
-        let axes = [self.walk.is_some(), self.lines.is_some(), self.order.is_some(), self.address.is_some()];
-        let more = [self.estimator.is_some(), self.direction.is_some(), self.survival.is_some()];
-        axes.contains(&true) || more.contains(&true) || self.first_shot.is_some()
-    }
-
-    /// The method of Monte Carlo with the axes that were asked for.
-    ///
-    /// # Errors
-    /// A failure for a name that is in no table, for a combination without meaning, and for a setting of other methods.
-    pub fn method(&self) -> Result<Method, Failure> {
-        let names = METHODS.iter().map(|method| method.name).chain(DETERMINISTIC.iter().map(|entry| entry.name));
-        let named = Method::named(self.name()).map_err(|_| Error::unknown_name("method", self.name(), names))?;
-        let mut method = Method {
-            walk: self.walk.unwrap_or(named.walk),
-            lines: self.lines.unwrap_or(named.lines),
-            order: self.order.unwrap_or(named.order),
-            sequence: self.sequence.unwrap_or(named.sequence),
-            estimator: self.estimator.unwrap_or(named.estimator),
-            direction: self.direction.unwrap_or(named.direction),
-            survival: self.survival.unwrap_or(named.survival),
-            first_shot: self.first_shot.unwrap_or(named.first_shot),
-            ..named
-        };
-        let moved = [method.walk != named.walk, method.lines != named.lines, method.order != named.order];
-        let natural = if moved.contains(&true) { method.natural_address() } else { named.address };
-        method.address = self.address.unwrap_or(natural);
-        method.check()?;
-        self.refuse_settings_but(&[])?;
-        Ok(method)
     }
 }
 
@@ -188,7 +117,10 @@ fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::failure::Failure;
     use clap::Parser;
+    use isolux_core::solvers::Chosen;
+    use isolux_core::solvers::monte_carlo::Method;
 
     #[derive(Parser)]
     struct Command {
@@ -196,8 +128,9 @@ mod tests {
         method: MethodArguments,
     }
 
-    fn arguments(text: &str) -> MethodArguments {
-        Command::try_parse_from(text.split(' ')).map(|command| command.method).unwrap_or_else(|error| panic!("{error}"))
+    fn arguments(text: &str) -> Asked {
+        let parsed = Command::try_parse_from(text.split(' '));
+        parsed.map(|command| command.method.asked()).unwrap_or_else(|error| panic!("{error}"))
     }
 
     #[test]
@@ -226,20 +159,16 @@ mod tests {
 
     #[test]
     fn settings_that_would_be_ignored_are_refused() {
-        let refused = |text: &str| {
-            let arguments = arguments(text);
-            match arguments.deterministic() {
-                Some(entry) => arguments.deterministic_settings(entry, 1).unwrap_err().to_string(),
-                None => arguments.method().unwrap_err().to_string(),
-            }
-        };
+        let refused = |text: &str| Failure::from(arguments(text).chosen().unwrap_err()).to_string();
         assert!(refused("solve --method direct --order wdrs").contains("no random numbers"));
         assert!(refused("solve --method direct --unshot 0.1").contains("no use for --unshot"));
         assert!(refused("solve --method southwell --factors contour").contains("no use for --factors"));
         assert!(refused("solve --method gauss-seidel --ambient").contains("no use for --ambient"));
         assert!(refused("solve --method shirley --link-power 0.1").contains("no use for --link-power"));
         let hemicube = arguments("solve --method gauss-seidel --factors hemicube --unshot 0.01");
-        let settings = hemicube.deterministic_settings(hemicube.deterministic().unwrap(), 7).unwrap();
+        let Ok(Chosen::Deterministic(_, settings)) = (Asked { seed: Some(7), ..hemicube }).chosen() else {
+            panic!("gauss-seidel is deterministic")
+        };
         assert_eq!((settings.way.as_str(), settings.unshot, settings.factors.seed), ("hemicube", 0.01, 7));
     }
 }

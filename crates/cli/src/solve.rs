@@ -13,20 +13,16 @@ use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
 use crate::progress::{Display, ProgressArguments};
 use crate::resume::{Place, ResumeArguments, resume, time_left};
-use crate::solver::{Chosen, SolverArguments};
+use crate::solver::SolverArguments;
 use crate::summary::Summary;
 use crate::{input, terminal};
 use isolux_core::Problem;
-use isolux_core::mesh::Resolution;
 use isolux_core::scene::cut_at_contacts;
 use isolux_core::solvers::Progress;
 use isolux_core::solvers::monte_carlo::Budget;
 use isolux_io::checkpoint_file::{Checkpoint, Clock};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-
-/// Elements that deterministic methods aim at unless said otherwise: their cost grows with the square.
-const DETERMINISTIC_ELEMENTS: u64 = 2000;
 
 /// Contacts that are shorter than this share of an element's edge are ignored.
 const DETAIL: f32 = 1.0;
@@ -249,7 +245,7 @@ impl Solve {
         let scene = input::scene(self.scene.as_deref().unwrap_or(Path::new("")), &self.units.options())?;
         self.picture.check_camera(&scene)?;
         let budget = self.budget.budget(&scene)?.unwrap_or(Budget::Heuristic);
-        let resolution = self.resolution(&chosen);
+        let resolution = chosen.resolution(self.elements, self.max_edge);
         let detail = DETAIL * resolution.typical_edge(&scene);
         let scene = if self.contacts == Contacts::Cut { cut_at_contacts(scene, detail) } else { scene };
         let limits = Limits { rays: self.budget.rays, time: self.budget.time, light: self.solver.light() };
@@ -257,16 +253,6 @@ impl Solve {
         let Meshed { problem, budget, took } = self.mesh.cut(scene, resolution, budget, limits, display, check)?;
         let solver = self.solver.solver(&chosen, &problem, budget)?;
         Ok(Checkpoint { problem, solver, clock: Clock { solved: took, limit: self.budget.time } })
-    }
-
-    fn resolution(&self, chosen: &Chosen) -> Resolution {
-        match (self.elements, self.max_edge) {
-            (Some(elements), _) if chosen.is_deterministic() => Resolution::Elements(elements),
-            (Some(elements), _) => Resolution::Clustered(elements),
-            (None, Some(edge)) => Resolution::MaxEdge(edge),
-            (None, None) if chosen.is_deterministic() => Resolution::Elements(DETERMINISTIC_ELEMENTS),
-            (None, None) => Resolution::default(),
-        }
     }
 
     fn report(&self, summary: &Summary) -> Result<(), Failure> {

@@ -78,7 +78,7 @@ fn bad_usage_is_explained() {
         (&["solve", "box", "--error", "1%", "--error-of", "worst"], "object:NAME"),
         (&["solve", "box", "--error", "1%", "--error-of", "object:flor"], "did you mean 'floor'"),
         (&["solve", "box", "--error", "1%", "--replicates", "1"], "at least 8"),
-        (&["solve", "box", "--error", "1%", "--method", "gauss-seidel"], "no --error"),
+        (&["solve", "box", "--error", "1%", "--method", "gauss-seidel"], "no use for --error"),
         (&["solve", "box", "--elements", "9", "--max-edge", "1"], "cannot be used with"),
         (&["solve", "box", "--replicates", "3"], "at least 8"),
         (&["solve", "box", "--max-edge", "1", "--mesh", "adaptive"], "--elements"),

@@ -5,8 +5,9 @@
 
 use crate::math::Estimate;
 use crate::math::estimate::student;
+use crate::scene::Scene;
 use crate::solution::luminance_error;
-use crate::{Problem, Solution};
+use crate::{Error, Problem, Solution};
 
 /// How accurate a solution shall be.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -40,6 +41,24 @@ impl Quantity {
             Quantity::Max => "max".to_owned(),
             Quantity::Mean => "mean".to_owned(),
             Quantity::Object(object) => format!("object {object}"),
+        }
+    }
+
+    /// The object of `scene` called `name`.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] if there is none, [`Error::Parameter`] if there are several.
+    pub fn of_object(scene: &Scene, name: &str) -> Result<Quantity, Error> {
+        let mut found = (0..).zip(&scene.objects).filter(|(_, object)| object.name == name).map(|(k, _)| k);
+        match (found.next(), found.next()) {
+            (Some(object), None) => Ok(Quantity::Object(object)),
+            (Some(_), Some(_)) => {
+                let allowed = "several objects have this name; give each a name of its own";
+                Err(Error::Parameter { name: "object", value: name.to_owned(), allowed })
+            }
+            (None, _) => {
+                Err(Error::unknown_name("object", name, scene.objects.iter().map(|object| object.name.as_str())))
+            }
         }
     }
 

@@ -23,6 +23,10 @@ pub enum Error {
     #[error("this combination has no meaning: {what}; nearest is {nearest}")]
     Meaningless { what: &'static str, nearest: &'static str },
 
+    /// Something that a method would ignore; the text says why, and what to do.
+    #[error("{method} has no use for {option}: {why}")]
+    Unused { method: &'static str, option: &'static str, why: &'static str },
+
     /// Two solutions that have nothing in common; the text says why.
     #[error("the two solutions cannot be compared: {what}")]
     NotComparable { what: &'static str },

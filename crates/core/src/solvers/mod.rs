@@ -2,16 +2,20 @@
 
 mod allocation;
 pub mod budget;
+mod chosen;
 pub mod deterministic;
 pub mod direct_light;
 mod gathering;
+mod independent;
 mod light_groups;
 pub mod monte_carlo;
 mod replicates;
 mod shooting;
 mod totals;
 
+pub use chosen::{Asked, Chosen};
 pub use direct_light::DirectLight;
+pub use independent::mean_of_independent;
 pub use light_groups::LightGroups;
 pub use monte_carlo::MonteCarlo;
 

@@ -25,7 +25,7 @@ pub mod vertex_field;
 pub(crate) mod vertices;
 
 pub use default_view::camera as default_camera;
-pub use picture::{Picture, ViewOptions, exposure, render, render_field};
+pub use picture::{ElementPicture, Picture, ViewOptions, elements, exposure, render, render_field};
 pub use seams::EdgePoints;
 pub use smooth::smooth;
 pub use tone::Exposure;

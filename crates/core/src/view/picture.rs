@@ -3,7 +3,7 @@
 use super::camera_rays::{self, CameraRays};
 use super::surface_light::{Seen, seen};
 use super::{Exposure, VertexField, default_view, tone};
-use crate::geometry::{Hit, Ray};
+use crate::geometry::{Hit, NONE, Ray};
 use crate::math::Rgb;
 use crate::{Error, Problem, Solution};
 use rayon::prelude::*;
@@ -75,9 +75,9 @@ pub fn render(problem: &Problem, solution: &Solution, options: &ViewOptions) -> 
 /// # Errors
 /// Those of [`render`].
 pub fn render_field(problem: &Problem, field: &VertexField, options: &ViewOptions) -> Result<Picture, Error> {
-    let view = View::new(problem, field, options)?;
-    let exposure = options.exposure.unwrap_or_else(|| view.meter());
-    let pixels = view.pixels(options.samples, exposure);
+    let view = View::new(problem, options)?;
+    let exposure = options.exposure.unwrap_or_else(|| view.meter(field));
+    let pixels = view.pixels(field, options.samples, exposure);
     Ok(Picture {
         width: view.width,
         height: view.height,
@@ -93,8 +93,33 @@ pub fn render_field(problem: &Problem, field: &VertexField, options: &ViewOption
 /// # Errors
 /// Those of [`render`].
 pub fn exposure(problem: &Problem, field: &VertexField, options: &ViewOptions) -> Result<Exposure, Error> {
-    let view = View::new(problem, field, options)?;
-    Ok(options.exposure.unwrap_or_else(|| view.meter()))
+    let view = View::new(problem, options)?;
+    Ok(options.exposure.unwrap_or_else(|| view.meter(field)))
+}
+
+/// The element that the middle of every pixel shows, rows from the top; [`NONE`] where there is no surface. For pictures of whatever is known
+/// of elements.
+///
+/// # Errors
+/// Those of [`render`].
+pub fn elements(problem: &Problem, options: &ViewOptions) -> Result<ElementPicture, Error> {
+    let view = View::new(problem, options)?;
+    let element = |hit: &Hit| problem.mesh.at(hit.triangle, hit.uv, hit.back).unwrap_or(NONE);
+    let mut elements = vec![NONE; (view.width * view.height) as usize];
+    elements.par_chunks_mut(RUN).enumerate().for_each(|(chunk, run)| {
+        let pixels = (chunk * RUN) as u32..;
+        let rays = pixels.take(run.len()).map(|p| view.rays.ray_in_pixel(p, view.width, 0, 1)).collect();
+        run.iter_mut().zip(view.look(rays)).for_each(|(pixel, hit)| *pixel = hit.as_ref().map_or(NONE, element));
+    });
+    Ok(ElementPicture { width: view.width, height: view.height, elements })
+}
+
+/// See [`elements`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ElementPicture {
+    pub width: u32,
+    pub height: u32,
+    pub elements: Vec<u32>,
 }
 
 fn check(name: &'static str, value: u32, fine: bool, allowed: &'static str) -> Result<(), Error> {
@@ -111,14 +136,13 @@ struct Pixel {
 
 struct View<'a> {
     problem: &'a Problem,
-    field: &'a VertexField,
     rays: CameraRays,
     width: u32,
     height: u32,
 }
 
 impl<'a> View<'a> {
-    fn new(problem: &'a Problem, field: &'a VertexField, options: &ViewOptions) -> Result<View<'a>, Error> {
+    fn new(problem: &'a Problem, options: &ViewOptions) -> Result<View<'a>, Error> {
         let camera = match camera_rays::find(&problem.scene, options.camera.as_deref())? {
             Some(camera) => camera.clone(),
             None => default_view::camera(problem),
@@ -132,16 +156,17 @@ impl<'a> View<'a> {
         check("width", width, width > 0 && pixels <= MOST_PIXELS, "1 to 2^28 pixels in all")?;
         check("height", height, height > 0, "at least one pixel")?;
         check("samples", options.samples, (1..=MOST_SAMPLES).contains(&options.samples), "1 to 65536 rays a pixel")?;
-        Ok(View { problem, field, rays: CameraRays::new(&camera, width, height), width, height })
+        Ok(View { problem, rays: CameraRays::new(&camera, width, height), width, height })
     }
 
-    fn pixels(&self, samples: u32, exposure: Exposure) -> Vec<Pixel> {
+    /// What [`Picture`] has of every pixel.
+    fn pixels(&self, field: &VertexField, samples: u32, exposure: Exposure) -> Vec<Pixel> {
         let mut pixels = vec![Pixel::default(); (self.width * self.height) as usize];
         pixels.par_chunks_mut(RUN).enumerate().for_each(|(chunk, run)| {
             let first = (chunk * RUN) as u32;
             let one = |p: u32| (0..samples).map(move |k| self.rays.ray_in_pixel(p, self.width, k, samples));
             let rays = (first..first + run.len() as u32).flat_map(one).collect();
-            let seen = self.look(rays);
+            let seen = self.seen(field, rays);
             for (pixel, seen) in run.iter_mut().zip(seen.chunks(samples as usize)) {
                 let luminances = seen.iter().map(|s| s.unwrap_or_default().luminance());
                 let displays = luminances.clone().map(|l| exposure.display(l));
@@ -158,20 +183,26 @@ impl<'a> View<'a> {
     }
 
     /// Exposure for the surfaces in the picture that are no lamps.
-    fn meter(&self) -> Exposure {
+    fn meter(&self, field: &VertexField) -> Exposure {
         let step = (self.width as f32 / METERED_WIDTH as f32).max(1.0);
         let (columns, rows) = ((self.width as f32 / step) as u32, (self.height as f32 / step) as u32);
         let at = |k: u32| ((k % columns) as f32 + 0.5, (k / columns) as f32 + 0.5);
         let rays = (0..columns * rows.max(1)).map(|k| self.rays.ray(at(k).0 * step, at(k).1 * step)).collect();
-        let lit = self.look(rays).into_iter().flatten().filter(|seen| seen.emitted.is_black());
+        let lit = self.seen(field, rays).into_iter().flatten().filter(|seen| seen.emitted.is_black());
         Exposure::metered(lit.map(|seen| seen.reflected.luminance()).collect())
     }
 
-    /// What each ray sees: nothing, or a surface. The back of a one-sided surface is looked through, so a room can be
+    /// What each ray sees, if anything.
+    fn seen(&self, field: &VertexField, rays: Vec<Ray>) -> Vec<Option<Seen>> {
+        let light = |hit: Hit| seen(self.problem, field, hit.triangle, hit.uv, hit.back);
+        self.look(rays).into_iter().map(|hit| hit.map(light)).collect()
+    }
+
+    /// Where each ray meets a surface, if it does. The back of a one-sided surface is looked through, so a room can be
     /// seen from outside.
-    fn look(&self, mut rays: Vec<Ray>) -> Vec<Option<Seen>> {
-        let (problem, field) = (self.problem, self.field);
-        let mut seen_by = vec![None; rays.len()];
+    fn look(&self, mut rays: Vec<Ray>) -> Vec<Option<Hit>> {
+        let problem = self.problem;
+        let mut met = vec![None; rays.len()];
         let mut waiting: Vec<usize> = (0..rays.len()).collect();
         for _ in 0..MOST_LAYERS {
             let current: Vec<Ray> = waiting.iter().map(|&k| rays[k]).collect();
@@ -185,7 +216,7 @@ impl<'a> View<'a> {
                     rays[k] = Ray { origin, from: hit.triangle, ..ray };
                     through.push(k);
                 } else {
-                    seen_by[k] = Some(seen(problem, field, hit.triangle, hit.uv, hit.back));
+                    met[k] = Some(*hit);
                 }
             }
             waiting = through;
@@ -193,7 +224,7 @@ impl<'a> View<'a> {
                 break;
             }
         }
-        seen_by
+        met
     }
 }
 
@@ -271,6 +302,20 @@ mod tests {
     fn twice_the_light_and_a_stop_less_give_the_same_picture() {
         let with = |stops| ViewOptions { exposure: Some(Exposure { stops }), ..small() };
         assert_eq!(furnace(1.0, &with(0.5)).to_srgb8(), furnace(2.0, &with(-0.5)).to_srgb8());
+    }
+
+    #[test]
+    fn every_pixel_shows_the_element_that_its_middle_meets() {
+        let problem = Problem::new(room(), Resolution::Elements(200)).unwrap();
+        let shown = elements(&problem, &small()).unwrap();
+        assert_eq!((shown.width, shown.height, shown.elements.len()), (40, 23, 40 * 23));
+        // From inside of the cube, every pixel shows a wall; and lamps of one element are where that element is.
+        assert!(shown.elements.iter().all(|&e| (e as usize) < problem.mesh.len()));
+        let one = shown.elements[40 * 11 + 20];
+        let light = (0..problem.mesh.len() as u32).map(|e| if e == one { Rgb::WHITE } else { Rgb::BLACK }).collect();
+        let as_computed = VertexField::as_computed(&problem, &solution(light));
+        let picture = render_field(&problem, &as_computed, &small()).unwrap();
+        assert!(picture.luminance[40 * 11 + 20].g > picture.luminance[0].g);
     }
 
     #[test]

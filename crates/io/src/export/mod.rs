@@ -1,7 +1,7 @@
 //! Writers, one format a file. Each turns a solution into the bytes of a file; [`crate::files`] puts them on the disk.
 
 mod csv;
-mod elements;
+pub mod elements;
 mod faces;
 pub mod factors;
 mod glb;

@@ -52,6 +52,15 @@ pub enum Budget {
 }
 
 impl Budget {
+    /// Until the `accuracy` is reached or so many `rays` are spent, if they are asked for; without either the driver ends it if it `is_timed`.
+    pub fn asked(accuracy: Option<Accuracy>, rays: Option<u64>, is_timed: bool) -> Option<Budget> {
+        match (accuracy, rays) {
+            (Some(accuracy), most_rays) => Some(Budget::Accuracy { accuracy, most_rays }),
+            (None, Some(rays)) => Some(Budget::Rays(rays)),
+            (None, None) => is_timed.then_some(Budget::Endless),
+        }
+    }
+
     /// For the provenance, as `name = value`.
     pub fn parameters(&self) -> Vec<(String, String)> {
         let named = |name: &str, value: String| (name.to_owned(), value);
