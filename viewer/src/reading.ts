@@ -80,7 +80,7 @@ export class ReadingCard {
       : "this element, with 95 % confidence";
     const rows: [string, string][] = [];
     const here = luminance(...irradiance);
-    if (!Number.isNaN(here)) rows.push(["Here, between elements", `${significant(here, 4)} lx`]);
+    if (!Number.isNaN(here)) rows.push(["Interpolated here", `${significant(here, 4)} lx`]);
     rows.push(...this.compared(drawing, e));
     rows.push(
       ["Object", surfaces.header.objects[object] || `number ${object}`],
