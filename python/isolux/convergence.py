@@ -117,6 +117,8 @@ class Convergence:
 
 
 MARKERS = "osD^vPX*<>hp"
+ABOVE = 1.6
+"""So much higher than the highest curve straight lines begin."""
 
 
 def draw_curves(table: Any, x: str, y: str, x_label: str, y_label: str, title: str, guides: Sequence[float]) -> Any:
@@ -165,13 +167,16 @@ def _draw_curve(axes: Any, rows: Any, x: str, y: str, name: str, k: int) -> None
 
 
 def _draw_guides(axes: Any, guides: Sequence[float]) -> None:
-    """Straight lines of the given slopes through the start of the first curve."""
+    """Straight lines of the given slopes, a little above the curves."""
     lines = [container.lines[0] for container in axes.containers]
     if not lines:
         return
     at = np.concatenate([line.get_xdata() for line in lines])
     first = max(line.get_ydata()[0] for line in lines)
     span = np.array([at.min(), at.max()])
-    for slope in guides:
-        axes.plot(span, 1.25 * first * (span / span[0]) ** slope, color="0.6", linewidth=0.9, linestyle=":", zorder=0)
-        axes.annotate(f"slope {slope:g}", (span[0], 1.25 * first), color="0.45", fontsize="small", ha="left", va="bottom")
+    for k, slope in enumerate(guides):
+        heights = ABOVE * first * (span / span[0]) ** slope
+        axes.plot(span, heights, color="0.6", linewidth=0.9, linestyle=":", zorder=0)
+        # The first at its start, above it; steeper ones at their ends, below: there is room.
+        at, where = (0, {"ha": "left", "va": "bottom"}) if k == 0 else (1, {"ha": "right", "va": "top"})
+        axes.annotate(f"slope {slope:g}", (span[at], heights[at]), color="0.45", fontsize="small", **where)

@@ -5,6 +5,7 @@
 use crate::fail::Fail;
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
+use std::sync::Mutex;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
@@ -30,7 +31,8 @@ pub fn in_background<T: Send>(
             drop(done);
             result
         });
-        let is_done = std::sync::Mutex::new(is_done);
+        // Only this thread receives; the lock lets the interpreter be let go meanwhile, as what is shared then must be.
+        let is_done = Mutex::new(is_done);
         let wait = || is_done.lock().map_or(Err(RecvTimeoutError::Disconnected), |is_done| is_done.recv_timeout(EVERY));
         let mut failed = Ok(());
         while let Err(RecvTimeoutError::Timeout) = py.detach(wait) {

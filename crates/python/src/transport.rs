@@ -45,16 +45,15 @@ pub fn rays(
 ) -> Result<Vec<Ray>, Fail> {
     check_count("directions", directions.len(), origins.len())?;
     check_count("leaving", leaving.map_or(origins.len(), <[i64]>::len), origins.len())?;
+    let what = "origins are finite, and directions have a length";
     let ray = |k: usize| {
         let (origin, direction) = (Vec3::from(origins[k]), Vec3::from(directions[k]));
         let direction = direction.try_normalize().filter(|_| origin.is_finite());
-        let from = leaving.map_or(Ok(NONE), |leaving| Ok(problem.mesh.triangle(element(problem, leaving[k])?)));
-        let what = "origins are finite, and directions have a length";
-        Ok(Ray {
-            origin,
-            direction: direction.ok_or_else(|| refused("ray", k.to_string(), what))?,
-            from: from.map_err(|fail: Fail| fail)?,
-        })
+        let from = match leaving {
+            Some(leaving) => problem.mesh.triangle(element(problem, leaving[k])?),
+            None => NONE,
+        };
+        Ok(Ray { origin, direction: direction.ok_or_else(|| refused("ray", k.to_string(), what))?, from })
     };
     (0..origins.len()).map(ray).collect()
 }
