@@ -17,7 +17,7 @@ use uvunwrap::{MeshInput, Options, Packing};
 /// More triangles than this are packed in rows, which is several times faster and less dense.
 const MANY: usize = 20_000;
 /// Share of the map that surfaces cover, in estimates.
-const USED: f64 = 0.5;
+const USED: f64 = 0.3;
 
 /// Coordinates of faces.
 pub struct Unwrapped {

@@ -2,12 +2,12 @@
 
 use super::*;
 use crate::export::{LitScene, scene_glb};
-use crate::files::OutputFile;
 use crate::fixture;
-use crate::import::{ImportOptions, read_scene};
+use crate::import::{self, ImportOptions};
 use glam::Vec2;
 use isolux_core::lightmap::{Density, Origin};
 use isolux_core::math::Rgb;
+use isolux_core::scene::Scene;
 
 const SIZE: u32 = 128;
 
@@ -134,13 +134,16 @@ fn eight_bits_are_read_back_as_the_manifest_says() {
     });
 }
 
+/// The scene in the bytes of a `.glb`.
+fn read(bytes: &[u8]) -> Scene {
+    let importer = import::FORMATS.iter().find(|format| format.extensions.contains(&"glb")).unwrap();
+    (importer.read)(Path::new("a.glb"), bytes, &ImportOptions::default()).unwrap()
+}
+
 #[test]
 fn what_was_baked_once_keeps_its_coordinates() {
     with_baked(Carrier::Sidecar, |baked, _| {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.glb");
-        OutputFile::create(&path).unwrap().finish(&glb::write(baked).unwrap()).unwrap();
-        let scene = read_scene(&path, &ImportOptions::default()).unwrap();
+        let scene = read(&glb::write(baked).unwrap());
         assert_eq!(scene.lightmap_uvs.len(), scene.vertices.len());
         let problem = Problem::new(scene, isolux_core::mesh::Resolution::Elements(200)).unwrap();
         let solution = Solution {
@@ -178,9 +181,6 @@ fn every_format_and_carrier_writes_the_same_bytes_each_time() {
 
 #[test]
 fn coordinates_of_a_texture_are_not_taken_for_a_lightmaps() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.glb");
-    OutputFile::create(&path).unwrap().finish(&scene_glb::write(&fixture::scene()).unwrap()).unwrap();
-    let scene = read_scene(&path, &ImportOptions::default()).unwrap();
+    let scene = read(&scene_glb::write(&fixture::scene()).unwrap());
     assert!(scene.lightmap_uvs.is_empty() && scene.remarks.iter().all(|remark| !remark.contains("TEXCOORD")));
 }
