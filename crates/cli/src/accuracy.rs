@@ -64,7 +64,10 @@ impl AccuracyArguments {
 }
 
 fn object_called(scene: &Scene, name: &str) -> Result<Quantity, Failure> {
-    let failed = |error| Failure::usage(format!("--error-of: {error}")).with_help("the table of 'isolux solve --objects all' has all names");
+    let failed = |error| {
+        Failure::usage(format!("--error-of: {error}"))
+            .with_help("the table of 'isolux solve --objects all' has all names")
+    };
     Quantity::of_object(scene, name).map_err(failed)
 }
 
