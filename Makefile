@@ -53,7 +53,7 @@ demo: build
 	@echo "out/office.isolux  the solution; look again with: $(ISOLUX) render out/office.isolux -o out/again.png"
 
 test: viewer
-	cargo test --release --locked --workspace
+	cargo test --release --locked --workspace --no-fail-fast
 	$(MAKE) --no-print-directory test-viewer
 	$(MAKE) test-python
 
