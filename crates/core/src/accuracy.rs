@@ -80,7 +80,7 @@ impl Quantity {
             Quantity::Mean => relative_margin(&certainty.scene, confidence),
             Quantity::Object(object) => {
                 let first = 2 * object as usize;
-                let sides = certainty.faces.iter().skip(first).take(2).filter(|side| !side.mean.is_nan());
+                let sides = certainty.faces.iter().skip(first).take(2);
                 let brighter = sides.max_by(|front, back| front.mean.total_cmp(&back.mean));
                 brighter.map_or(f64::NAN, |side| relative_margin(side, confidence))
             }

@@ -21,8 +21,8 @@ const MANY: f64 = 1e4;
 pub struct Certainty {
     /// Mean irradiance by area of all surfaces.
     pub scene: Estimate,
-    /// Mean irradiance by area of the front and then of the back of each object of the scene ([`Problem::face`](crate::Problem::face)); not a
-    /// number where there are no elements.
+    /// Mean irradiance by area of the front and then of the back of each object of the scene ([`Problem::face`](crate::Problem::face)); zero
+    /// where there are no elements.
     pub faces: Vec<Estimate>,
     /// The area-weighted mean square error [lux²] that is expected.
     pub mean_square: f64,

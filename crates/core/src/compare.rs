@@ -128,7 +128,8 @@ fn means_of_objects(problem: &Problem, a: &Certainty, b: &Certainty) -> Vec<Obje
         let name = problem.scene.objects[face / 2].name.clone();
         ObjectMeans { name, side, means: Means::of(a, b) }
     };
-    faces.filter(|(_, (a, _))| !a.mean.is_nan()).map(means).collect()
+    let is_there = problem.has_faces();
+    faces.filter(|((face, _), _)| is_there[*face]).map(means).collect()
 }
 
 impl Scores {

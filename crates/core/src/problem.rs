@@ -61,15 +61,20 @@ impl Problem {
         2 * self.scene.objects.len()
     }
 
-    /// For each face, which side of its object it is, if that has elements on both.
-    pub fn sides(&self) -> Vec<Option<Side>> {
+    /// For each face, whether it has elements.
+    pub fn has_faces(&self) -> Vec<bool> {
         let mut is_there = vec![false; self.faces()];
         self.mesh.elements().for_each(|e| is_there[self.face(e) as usize] = true);
+        is_there
+    }
+
+    /// For each face, which side of its object it is, if that has elements on both.
+    pub fn sides(&self) -> Vec<Option<Side>> {
         let of_object = |pair: &[bool]| match pair {
             [true, true] => [Some(Side::Front), Some(Side::Back)],
             _ => [None, None],
         };
-        is_there.chunks(2).flat_map(of_object).collect()
+        self.has_faces().chunks(2).flat_map(of_object).collect()
     }
 
     /// Flux [lm] per channel that the sources of `group` emit.

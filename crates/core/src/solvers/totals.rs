@@ -33,7 +33,8 @@ impl Totals {
             }
         }
         self.means.resize(sums.len(), Moments::default());
-        self.means.iter_mut().zip(sums).for_each(|(mean, (flux, area))| mean.push(flux / area));
+        let share = |(flux, area): (f64, f64)| if area > 0.0 { flux / area } else { 0.0 };
+        self.means.iter_mut().zip(sums).for_each(|(mean, sum)| mean.push(share(sum)));
         self.squares.extend(square);
     }
 
