@@ -32,8 +32,8 @@ def load(
             "labyrinth:rho=0.9"; `isolux.names("scenes")` has all of them. A file of that name wins.
         light_units: what the intensities of a glTF file's lamps mean: "spec" is candela and lux, as glTF says; "compat" and "raw" are
             W/sr and W, as Blender's exporter may write them.
-        insides: what becomes of the sides of closed two-sided surfaces that nobody can see: "hide" is that they are no surfaces, "keep" that both
-            sides count, as the file says.
+        insides: what becomes of the sides of closed two-sided surfaces that nobody can see: "hide" is that they are no surfaces,
+            "keep" that both sides count, as the file says.
 
     Raises:
         MissingFile, FileError: the file is not there, or cannot be read.

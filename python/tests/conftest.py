@@ -1,5 +1,6 @@
 """Solutions that several tests look at, and where things are."""
 
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,9 @@ import isolux
 
 ROOT = Path(__file__).parents[2]
 """The folder of the project."""
+
+# Jobs in the background of a shell ignore Ctrl-C, and so would what is tested here.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
