@@ -84,7 +84,7 @@ fn shortened(command: &str) -> String {
     if is("--live") || words[1] == "view" && !is("-o") {
         more += " --no-open";
     }
-    let begin = if is("--live") { "timeout --preserve-status --signal INT 10 " } else { "" };
+    let begin = if is("--live") { "timeout --foreground --preserve-status --signal INT 10 " } else { "" };
     format!("{begin}{}{more}", words.join(" "))
 }
 
