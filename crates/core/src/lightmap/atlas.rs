@@ -2,6 +2,7 @@
 
 use super::faces::{brighter_faces, lit_faces};
 use super::{Face, existing, unwrap};
+use crate::math::DisjointSets;
 use crate::view::VertexField;
 use crate::{Error, Problem};
 use glam::{DVec2, Vec2};
@@ -167,39 +168,15 @@ fn charts(problem: &Problem, faces: &[Face], uv: &[[Vec2; 3]]) -> (Vec<u32>, u32
         }
     }
     edges.sort_unstable_by_key(|(key, border)| (*key, border.face, border.edge));
-    let mut parent: Vec<u32> = (0..faces.len() as u32).collect();
+    let mut groups = DisjointSets::new(faces.len());
     let mut borders = Vec::new();
     for same in edges.chunk_by(|a, b| a.0 == b.0) {
         if let [(_, border)] = same {
             borders.push(*border);
         }
-        same.windows(2).for_each(|pair| join(&mut parent, pair[0].1.face, pair[1].1.face));
+        same.windows(2).for_each(|pair| groups.join(pair[0].1.face, pair[1].1.face));
     }
     borders.sort_unstable_by_key(|border| (border.face, border.edge));
-    let mut number = vec![u32::MAX; faces.len()];
-    let mut count = 0;
-    let mut chart = Vec::with_capacity(faces.len());
-    for f in 0..faces.len() as u32 {
-        let root = root(&mut parent, f) as usize;
-        if number[root] == u32::MAX {
-            number[root] = count;
-            count += 1;
-        }
-        chart.push(number[root]);
-    }
+    let (chart, count) = groups.numbered();
     (chart, count, borders)
-}
-
-/// The representative of a set, the smallest of its members; the way there is shortened.
-fn root(parent: &mut [u32], mut k: u32) -> u32 {
-    while parent[k as usize] != k {
-        parent[k as usize] = parent[parent[k as usize] as usize];
-        k = parent[k as usize];
-    }
-    k
-}
-
-fn join(parent: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(parent, a), root(parent, b));
-    parent[a.max(b) as usize] = a.min(b);
 }

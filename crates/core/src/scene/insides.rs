@@ -14,6 +14,7 @@ use super::shells::{Surface, surfaces};
 use super::{LightKind, Scene, Shape};
 use glam::Vec3;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// Corners of a surface that are looked at to tell where it is.
 const SAMPLES: usize = 6;
@@ -53,11 +54,8 @@ impl Scene {
         if !hidden.contains(&true) {
             return Vec::new();
         }
-        let mut objects: Vec<u32> =
-            self.triangles.iter().zip(&hidden).filter(|(_, hidden)| **hidden).map(|(t, _)| t.object).collect();
-        objects.dedup();
-        objects.sort_unstable();
-        objects.dedup();
+        let of_hidden = self.triangles.iter().zip(&hidden).filter(|(_, hidden)| **hidden).map(|(t, _)| t.object);
+        let objects: BTreeSet<u32> = of_hidden.collect();
         self.hidden_backs = hidden;
         objects.into_iter().map(|object| self.objects[object as usize].name.clone()).collect()
     }

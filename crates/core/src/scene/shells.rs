@@ -5,6 +5,7 @@
 //! which it sees the triangles, over 4π (Van Oosterom & Strackee 1983). Costs a sort of the edges.
 
 use super::Scene;
+use crate::math::DisjointSets;
 use crate::math::weld::{TOLERANCE, Weld};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -47,7 +48,7 @@ type Beyond = Option<(u32, bool)>;
 pub fn surfaces(scene: &Scene) -> Vec<Surface> {
     let edges = edges(scene);
     let count = scene.triangles.len();
-    let mut groups = Groups((0..count as u32).collect());
+    let mut groups = DisjointSets::new(count);
     let mut beyond: Vec<Beyond> = vec![None; 3 * count];
     for uses in edges.chunk_by(|a, b| a.ends == b.ends) {
         uses.windows(2).for_each(|pair| groups.join(pair[0].triangle(), pair[1].triangle()));
@@ -57,16 +58,9 @@ pub fn surfaces(scene: &Scene) -> Vec<Surface> {
             beyond[other.side as usize] = Some((one.triangle(), alike));
         }
     }
-    let mut number = vec![u32::MAX; count];
-    let mut surfaces: Vec<Vec<u32>> = Vec::new();
-    for t in 0..count as u32 {
-        let first = groups.first(t) as usize;
-        if number[first] == u32::MAX {
-            number[first] = surfaces.len() as u32;
-            surfaces.push(Vec::new());
-        }
-        surfaces[number[first] as usize].push(t);
-    }
+    let (number, count) = groups.numbered();
+    let mut surfaces: Vec<Vec<u32>> = vec![Vec::new(); count as usize];
+    (0..).zip(number).for_each(|(t, number)| surfaces[number as usize].push(t));
     surfaces.into_iter().map(|triangles| surface(scene, triangles, &beyond)).collect()
 }
 
@@ -156,24 +150,6 @@ fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let under = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
     let over = a.dot(b.cross(c));
     if over == 0.0 { 0.0 } else { 2.0 * over.atan2(under) }
-}
-
-/// Sets that are joined pair by pair; each is known by its least member.
-struct Groups(Vec<u32>);
-
-impl Groups {
-    fn first(&mut self, mut t: u32) -> u32 {
-        while self.0[t as usize] != t {
-            self.0[t as usize] = self.0[self.0[t as usize] as usize];
-            t = self.0[t as usize];
-        }
-        t
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.first(a), self.first(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Object and material do not matter: irradiance does not contain the reflectivity, so it is smooth across a change of
 //! paint on a flat wall. The angle does: across an edge between two walls it jumps.
 
+use crate::math::DisjointSets;
 use glam::Vec3;
 
 /// Sides whose normals differ by less than this meet smoothly. Furniture is commonly modelled with 15 to 30 degrees
@@ -17,7 +18,7 @@ const SAME: f32 = 0.999_85;
 pub fn groups(normals: &[Vec3]) -> Vec<u32> {
     let smooth = CREASE_ANGLE.cos();
     let mut distinct: Vec<Vec3> = Vec::new();
-    let mut parent: Vec<u32> = Vec::new();
+    let mut groups = DisjointSets::default();
     let index: Vec<usize> = normals
         .iter()
         .map(|normal| {
@@ -25,35 +26,18 @@ pub fn groups(normals: &[Vec3]) -> Vec<u32> {
                 return same;
             }
             let new = distinct.len();
-            parent.push(new as u32);
+            groups.push();
             for (k, other) in distinct.iter().enumerate() {
                 if other.dot(*normal) > smooth {
-                    join(&mut parent, k as u32, new as u32);
+                    groups.join(k as u32, new as u32);
                 }
             }
             distinct.push(*normal);
             new
         })
         .collect();
-    let roots: Vec<u32> = (0..parent.len() as u32).map(|k| root(&parent, k)).collect();
-    let mut order: Vec<u32> = roots.clone();
-    order.sort_unstable();
-    order.dedup();
-    let number = |root: u32| order.binary_search(&root).unwrap_or(0) as u32;
-    index.into_iter().map(|k| number(roots[k])).collect()
-}
-
-/// The representative of a set, the smallest of its members.
-fn root(parent: &[u32], mut k: u32) -> u32 {
-    while parent[k as usize] != k {
-        k = parent[k as usize];
-    }
-    k
-}
-
-fn join(parent: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(parent, a), root(parent, b));
-    parent[a.max(b) as usize] = a.min(b);
+    let (number, _) = groups.numbered();
+    index.into_iter().map(|k| number[k]).collect()
 }
 
 #[cfg(test)]
