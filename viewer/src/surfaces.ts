@@ -13,7 +13,6 @@ export interface TextureHeader {
 /** Triangles that reflect and emit alike. */
 export interface Batch {
   material: string;
-  two_sided: boolean;
   reflectivity: Rgb;
   reflectivity_texture: TextureHeader | null;
   /** Exitance [lm/m²] at factor 1 of the group. */

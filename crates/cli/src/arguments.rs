@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::numbers::parse_count;
+use crate::progress::{Display, ProgressArguments};
 use isolux_core::Error;
 use isolux_core::scene::Scene;
 use isolux_io::export::{ExportOptions, Smoothing};
@@ -29,15 +30,13 @@ pub struct UnitArguments {
 
     /// What becomes of the insides of closed two-sided surfaces, and the outside of a closed room: hide (they are no surfaces, for nobody sees
     /// them) or keep (both sides count, as the file says)
-    #[arg(long, value_name = "WHAT", default_value = "hide")]
-    insides: Sides,
+    #[arg(long, value_name = "WHAT", default_value = "hide", value_parser = parse_insides)]
+    insides: Insides,
 }
 
-/// See [`Insides`].
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Sides {
-    Hide,
-    Keep,
+fn parse_insides(text: &str) -> Result<Insides, String> {
+    let found = Insides::ALL.into_iter().find(|insides| insides.name() == text);
+    found.ok_or_else(|| format!("it is one of {}", Insides::ALL.map(Insides::name).join(", ")))
 }
 
 /// The names of Blender's lighting modes, which does not say in the file which one was used.
@@ -58,11 +57,7 @@ impl UnitArguments {
             Units::Compat => LightUnits::Compat,
             Units::Raw => LightUnits::Raw,
         };
-        let insides = match self.insides {
-            Sides::Hide => Insides::Hide,
-            Sides::Keep => Insides::Keep,
-        };
-        ImportOptions { light_units, insides }
+        ImportOptions { light_units, insides: self.insides }
     }
 
     /// What the numbers in the file are taken for.
@@ -167,6 +162,34 @@ pub fn check_camera(wanted: Option<&str>, scene: &Scene) -> Result<(), Failure> 
     }
     let cameras = scene.cameras.iter().map(|camera| camera.name.as_str());
     Err(Failure::from(Error::unknown_name("camera", wanted, cameras)).with_help("'isolux check' lists the cameras"))
+}
+
+/// Who works, and what is shown meanwhile.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct WorkArguments {
+    #[command(flatten)]
+    threads: ThreadArguments,
+
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    #[command(flatten)]
+    progress: ProgressArguments,
+}
+
+impl WorkArguments {
+    /// See [`ThreadArguments::pool`].
+    ///
+    /// # Errors
+    /// A failure if the system does not give the threads.
+    pub fn pool(self) -> Result<rayon::ThreadPool, Failure> {
+        self.threads.pool()
+    }
+
+    pub fn display(self) -> Display {
+        self.progress.display(self.quiet)
+    }
 }
 
 /// How many threads.

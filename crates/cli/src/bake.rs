@@ -1,11 +1,10 @@
 //! `isolux bake`: a solution as a lightmap.
 
-use crate::arguments::{ThreadArguments, parse_exposure, parse_smoothing};
+use crate::arguments::{WorkArguments, parse_exposure, parse_smoothing};
 use crate::failure::Failure;
 use crate::interrupt::watch;
 use crate::numbers::{self, count, percent};
 use crate::output::{self, OpenFiles, Written};
-use crate::progress::ProgressArguments;
 use crate::{input, terminal};
 use isolux_core::lightmap::{Density, Layout, Origin};
 use isolux_core::view::{self, Exposure, ViewOptions};
@@ -81,14 +80,7 @@ pub struct Bake {
     smooth: Smoothing,
 
     #[command(flatten)]
-    threads: ThreadArguments,
-
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
-
-    #[command(flatten)]
-    progress: ProgressArguments,
+    work: WorkArguments,
 }
 
 fn parse_carrier(text: &str) -> Result<Carrier, String> {
@@ -103,8 +95,8 @@ fn parse_density(text: &str) -> Result<f32, String> {
 
 impl Bake {
     pub fn run(self) -> Result<u8, Failure> {
-        let pool = self.threads.pool()?;
-        let quiet = self.quiet;
+        let pool = self.work.pool()?;
+        let quiet = self.work.quiet;
         let words = watch(move |_, files| {
             let outputs = MapOutputs::open(files, &self)?;
             pool.install(|| self.bake(&outputs))
@@ -116,7 +108,7 @@ impl Bake {
     }
 
     fn bake(&self, outputs: &MapOutputs) -> Result<String, Failure> {
-        let mut display = self.progress.display(self.quiet);
+        let mut display = self.work.display();
         display.stage("reading the solution");
         let (problem, solution) = input::solution(&self.solution)?;
         display.stage("interpolating the light");

@@ -10,6 +10,7 @@ use crate::report::Table;
 use crate::{input, terminal};
 use isolux_core::form_factors::{self, Correction, FormFactors, Settings, WAYS};
 use isolux_core::mesh::Resolution;
+use isolux_core::solvers::DETERMINISTIC_ELEMENTS;
 use isolux_core::{Error, Problem};
 use isolux_io::export::factors::{FactorFile, FactorFormat, for_path};
 use serde_json::json;
@@ -36,9 +37,6 @@ In Python: F = scipy.sparse.load_npz('F.npz'); area = numpy.load('F.npz')['area'
 
 The matrix grows like the square of the number of elements; one that could have more than 100 million entries is \
 refused. Ctrl-C stops at once and leaves old files as they were.";
-
-/// Elements that are aimed at unless said otherwise.
-const ELEMENTS: u64 = 2000;
 
 /// Compute the form factors between all elements
 ///
@@ -179,7 +177,7 @@ impl Factors {
     fn element_size(&self) -> Resolution {
         match (self.elements, self.max_edge) {
             (_, Some(edge)) => Resolution::MaxEdge(edge),
-            (elements, None) => Resolution::Elements(elements.unwrap_or(ELEMENTS)),
+            (elements, None) => Resolution::Elements(elements.unwrap_or(DETERMINISTIC_ELEMENTS)),
         }
     }
 

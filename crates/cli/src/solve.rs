@@ -210,15 +210,16 @@ impl Solve {
         drop(solver);
 
         let written = outputs.write(&problem, &solution, &self.picture.options(), display, interrupt);
-        if let (Ok(_), Some(live)) = (&written, &mut live) {
+        if let Some(checkpoint) = checkpoints.as_ref().and_then(Checkpoints::beside) {
+            display.clear();
+            keep_or_remove(checkpoint, written.is_ok(), interrupt);
+        }
+        let written = written?;
+        if let Some(live) = &mut live {
             display.stage("showing the result");
             live.finish(&problem, &solution)?;
         }
         display.clear();
-        if let Some(checkpoint) = checkpoints.as_ref().and_then(Checkpoints::beside) {
-            keep_or_remove(checkpoint, written.is_ok(), interrupt);
-        }
-        let written = written?;
         let threads = rayon::current_num_threads();
         let summary =
             Summary { problem: &problem, solution: &solution, asked, bias, ended, seconds, threads, outputs: &written };

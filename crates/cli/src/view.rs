@@ -1,12 +1,12 @@
 //! `isolux view`: a solution as a page in the browser.
 
-use crate::arguments::{LookArguments, ThreadArguments, check_camera};
+use crate::arguments::{LookArguments, WorkArguments, check_camera};
 use crate::failure::Failure;
 use crate::input;
 use crate::interrupt::watch;
 use crate::live::open_in_browser;
 use crate::output::{self, OpenFiles, Written};
-use crate::progress::{Display, ProgressArguments};
+use crate::progress::Display;
 use crate::terminal;
 use isolux_io::export::{self, ExportOptions, LitScene, html};
 use std::path::{Path, PathBuf};
@@ -52,20 +52,13 @@ pub struct View {
     look: LookArguments,
 
     #[command(flatten)]
-    threads: ThreadArguments,
-
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
-
-    #[command(flatten)]
-    progress: ProgressArguments,
+    work: WorkArguments,
 }
 
 impl View {
     pub fn run(self) -> Result<u8, Failure> {
         let path = self.page()?;
-        let pool = self.threads.pool()?;
+        let pool = self.work.pool()?;
         watch(move |_, files| {
             let inputs: Vec<&Path> =
                 std::iter::once(&self.solution).chain(&self.before).map(PathBuf::as_path).collect();
@@ -88,11 +81,11 @@ impl View {
     }
 
     fn write(&self, path: &Path, files: &OpenFiles) -> Result<u8, Failure> {
-        let mut display = self.progress.display(self.quiet);
+        let mut display = self.work.display();
         let made = self.make(&mut display).and_then(|page| files.finish(0, &page).map(|()| page.len()));
         display.clear();
         let written = Written { path: path.to_owned(), bytes: made? };
-        if !self.quiet {
+        if !self.work.quiet {
             terminal::print(&format!("Wrote {}\n", output::in_words(&[written])))?;
         }
         if self.open || (self.output.is_none() && !self.no_open) {

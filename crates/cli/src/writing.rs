@@ -1,10 +1,10 @@
 //! Commands that read solutions, make one of them, and write it.
 
-use crate::arguments::{PictureArguments, ThreadArguments};
+use crate::arguments::{PictureArguments, WorkArguments};
 use crate::failure::Failure;
 use crate::interrupt::watch;
 use crate::output::{self, Outputs};
-use crate::progress::{Display, ProgressArguments};
+use crate::progress::Display;
 use crate::terminal;
 use isolux_core::{Problem, Solution};
 use std::path::{Path, PathBuf};
@@ -20,14 +20,7 @@ pub struct WritingArguments {
     picture: PictureArguments,
 
     #[command(flatten)]
-    threads: ThreadArguments,
-
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
-
-    #[command(flatten)]
-    progress: ProgressArguments,
+    work: WorkArguments,
 }
 
 /// A solution to write, and what there is to say about it.
@@ -48,13 +41,13 @@ impl WritingArguments {
         inputs: Vec<PathBuf>,
         make: impl FnOnce(&mut Display) -> Result<Made, Failure> + Send + 'static,
     ) -> Result<u8, Failure> {
-        let pool = self.threads.pool()?;
-        let quiet = self.quiet;
+        let pool = self.work.pool()?;
+        let quiet = self.work.quiet;
         let words = watch(move |interrupt, files| {
             let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
             let outputs = Outputs::open(files, &self.outputs, &inputs)?;
             pool.install(|| {
-                let mut display = self.progress.display(self.quiet);
+                let mut display = self.work.display();
                 let Made { problem, solution, words } = make(&mut display)?;
                 self.picture.check_camera(&problem.scene)?;
                 let written = outputs.write(&problem, &solution, &self.picture.options(), &mut display, interrupt);

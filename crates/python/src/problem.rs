@@ -7,6 +7,7 @@ use crate::transport;
 use crate::view::{numbers, rows, view, view_of_triples};
 use isolux_core::mesh::Resolution;
 use isolux_core::scene::cut_at_contacts;
+use isolux_core::solvers::DETERMINISTIC_ELEMENTS;
 use isolux_core::view::{ViewOptions, elements};
 use isolux_io::export::elements as export;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -82,7 +83,8 @@ impl Problem {
         max_edge: Option<f32>,
         contacts: bool,
     ) -> Result<Problem, Fail> {
-        let resolution = max_edge.map_or(Resolution::Elements(elements.unwrap_or(2000)), Resolution::MaxEdge);
+        let resolution =
+            max_edge.map_or(Resolution::Elements(elements.unwrap_or(DETERMINISTIC_ELEMENTS)), Resolution::MaxEdge);
         Problem::cut(py, scene, resolution, contacts)
     }
 

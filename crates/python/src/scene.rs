@@ -37,11 +37,10 @@ impl Scene {
             "raw" => LightUnits::Raw,
             other => return Err(Error::unknown_name("light unit", other, ["spec", "compat", "raw"]).into()),
         };
-        let insides = match insides {
-            "hide" => Insides::Hide,
-            "keep" => Insides::Keep,
-            other => return Err(Error::unknown_name("way with insides", other, ["hide", "keep"]).into()),
-        };
+        let known = Insides::ALL.into_iter().find(|known| known.name() == insides);
+        let insides = known.ok_or_else(|| {
+            Error::unknown_name("way with insides", insides, Insides::ALL.iter().map(|known| known.name()))
+        })?;
         let text = name.to_string_lossy().into_owned();
         let looks_like_a_name = !text.contains(['.', '/', '\\']) || is_builtin(&text);
         if !name.exists() && looks_like_a_name {

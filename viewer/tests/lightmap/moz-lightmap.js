@@ -5,17 +5,17 @@
 import { LinearSRGBColorSpace } from 'three';
 
 export class MozLightmap {
-	name = 'MOZ_lightmap';
+  name = 'MOZ_lightmap';
 
-	constructor(parser) {
-		this.parser = parser;
-	}
+  constructor(parser) {
+    this.parser = parser;
+  }
 
-	/** Attaches the light map while a material is made. */
-	async extendMaterialParams(material, parameters) {
-		const extension = this.parser.json.materials[material].extensions?.[this.name];
-		if (!extension) return;
-		await this.parser.assignTexture(parameters, 'lightMap', { texCoord: 1, ...extension }, LinearSRGBColorSpace);
-		parameters.lightMapIntensity = extension.intensity ?? 1;
-	}
+  /** Attaches the light map while a material is made. */
+  async extendMaterialParams(material, parameters) {
+    const extension = this.parser.json.materials[material].extensions?.[this.name];
+    if (!extension) return;
+    await this.parser.assignTexture(parameters, 'lightMap', { texCoord: 1, ...extension }, LinearSRGBColorSpace);
+    parameters.lightMapIntensity = extension.intensity ?? 1;
+  }
 }

@@ -4,7 +4,7 @@ use crate::Problem;
 use crate::math::Rgb;
 use crate::mesh::cells;
 use crate::scene::Shape;
-use crate::view::VertexField;
+use crate::view::{INSIDE, VertexField};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -22,8 +22,6 @@ pub struct Face {
 const WHOLE: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::Y];
 /// Along each edge of the octahedron whose faces become a sphere.
 const SPHERE_DIVISIONS: u16 = 32;
-/// A side with less than this share of the other side's light is the inside of something, and is not shown.
-const INSIDE: f32 = 0.01;
 /// Along each edge, when the light on the sides of a triangle is compared.
 const LOOKS: u16 = 4;
 

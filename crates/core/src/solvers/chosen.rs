@@ -15,8 +15,8 @@ use crate::scene::Grouping;
 use crate::transport::Leaving;
 use crate::{Error, Problem};
 
-/// Elements that deterministic methods aim at unless said otherwise: their cost grows with the square.
-const DETERMINISTIC_ELEMENTS: u64 = 2000;
+/// Elements that deterministic methods and matrices aim at unless said otherwise: their cost grows with the square.
+pub const DETERMINISTIC_ELEMENTS: u64 = 2000;
 
 /// What is asked for. Whatever is `None` is as the method has it.
 #[derive(Clone, Debug, Default, PartialEq)]

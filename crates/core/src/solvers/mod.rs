@@ -13,7 +13,7 @@ mod replicates;
 mod shooting;
 mod totals;
 
-pub use chosen::{Asked, Chosen};
+pub use chosen::{Asked, Chosen, DETERMINISTIC_ELEMENTS};
 pub use direct_light::DirectLight;
 pub use independent::mean_of_independent;
 pub use light_groups::LightGroups;

@@ -31,6 +31,10 @@ pub use smooth::smooth;
 pub use tone::Exposure;
 pub use vertex_field::VertexField;
 
+/// A side with less than this share of the other side's light is the inside of something: nobody sees it there, and what is made to be looked
+/// at leaves it out.
+pub const INSIDE: f32 = 0.01;
+
 #[cfg(test)]
 pub(crate) mod tests {
     use crate::Solution;

@@ -7,13 +7,10 @@ use glam::{Vec2, Vec3};
 use isolux_core::Problem;
 use isolux_core::math::Rgb;
 use isolux_core::mesh::Place;
-use isolux_core::view::{EdgePoints, VertexField};
+use isolux_core::view::{EdgePoints, INSIDE, VertexField};
 
 /// The corners of an element by their weights.
 const CORNERS: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
-
-/// A side with less than this share of the other side's light is the inside of something.
-const INSIDE: f32 = 0.01;
 
 /// Draws the elements of a problem.
 pub struct Faces<'a> {

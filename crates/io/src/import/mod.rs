@@ -64,6 +64,17 @@ pub enum Insides {
     Keep,
 }
 
+impl Insides {
+    pub const ALL: [Insides; 2] = [Insides::Hide, Insides::Keep];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Insides::Hide => "hide",
+            Insides::Keep => "keep",
+        }
+    }
+}
+
 /// How the intensities of punctual lights in a glTF file are meant. The names are those of the lighting modes of
 /// Blender's exporter, which writes all three without saying which; the results here are always candela and lux.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

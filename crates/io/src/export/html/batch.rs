@@ -49,7 +49,6 @@ pub fn batches(problem: &Problem, groups: &[GroupLight]) -> Vec<Batch> {
         let emission_texture = material.emission_texture.filter(|_| !emission.is_black());
         let look = json!({
             "material": material.name,
-            "two_sided": material.two_sided,
             "reflectivity": material.reflectivity.to_array(),
             "reflectivity_texture": material.reflectivity_texture.map(texture),
             "emission": emission.to_array(),
