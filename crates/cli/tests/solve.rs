@@ -134,7 +134,7 @@ fn the_mesh_follows_the_light_and_not_the_seed_or_the_method() {
     let elements = |summary: &serde_json::Value| summary["elements"].as_u64().unwrap();
     assert!((2700..=3000).contains(&elements(&adaptive)) && elements(&uniform) <= 3000, "{adaptive}");
     assert!(folder.fails(2, &["compare", "a.isolux", "u.isolux"]).contains("different elements"));
-    // A tenth of the rays finds the mesh.
+    // A part of the rays finds the mesh.
     assert!(adaptive["rays"].as_u64() < uniform["rays"].as_u64());
     solve("b.isolux", &with(&follow, &["--seed", "2"]));
     solve("c.isolux", &with(&follow, &["--method", "stochastic-jacobi"]));

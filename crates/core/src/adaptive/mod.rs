@@ -1,134 +1,188 @@
-//! Elements that follow the light: small where irradiance changes, at the edges of shadows and beside lamps, large where it does not.
+//! Elements that follow the light: small where irradiance changes, at the edges of shadows and beside lamps, large where it does not, and long
+//! where it changes in one direction only.
 //!
-//! With constant elements of size h, where the gradient of irradiance is g, the mean square error over the area is least for a given
-//! number of elements if each has the same share of it (equidistribution; Carey & Dinh 1985):
+//! For a given number of constant elements the mean square error over the area is least if each has the same share of it
+//! (equidistribution; Carey & Dinh 1985). So the patch with the largest error is bisected, again and again, from the corner that takes most of its error away:
 //!
 //! ```text
-//! error of an element  ∫ g² dA h² ~ g² h⁴ = λ,    so h ~ g^(-1/2),    λ such that Σ elements = N
+//! error of a patch    ∫ (E - mean E)² dA
 //! ```
 //!
-//! The error is then smaller than that of equal elements by `rms(g) / mean(g)`. The gradients are those of *pilots*, quick solutions on meshes of a
-//! few elements, the first one uniform, each next one finer where the one before was steep ([`follow_light`]): so edges are found to within
-//! ever smaller elements. [`gradient`] tells g, [`forest`] splits patches while their error is above λ, [`balance`] keeps
-//! neighbours within one level of each other. What a mesh becomes depends on the light alone, not on textures, and is always the
-//! same for the same pilots. Cost: a tenth of the rays, and about a second for a million elements.
+//! E is known before, well enough ([`light`]): direct light of every element of a coarser mesh, with the same random numbers in all, and indirect
+//! light of a *pilot*, a quick solution on large elements. Where triangles are smaller than elements should be they are put together ([`merge`]), up to the same
+//! error. [`grow`] says where to bisect, [`forest`] keeps the patches, [`counts`] tells how large the error is with so many elements, [`balance`] keeps neighbours
+//! within one level of each other. What a mesh becomes depends on the light alone, not on textures, and is always the same for the same effort.
+//! Cost: a fifth of the rays of a solve, and some 20 microseconds an element.
 
 mod balance;
 mod borders;
+mod counts;
 mod forest;
-mod gradient;
+mod grow;
+mod light;
+mod merge;
 
-use self::forest::{Forest, Rule};
-use self::gradient::Known;
+use self::counts::Counts;
+use self::forest::Forest;
+use self::grow::Rule;
+use self::light::{Indirect, Light};
+use self::merge::Merges;
+use crate::math::Rgb;
 use crate::mesh::{Cut, MOST_ELEMENTS, Resolution};
 use crate::scene::Scene;
 use crate::solvers::monte_carlo::{Budget, LightPart, METHODS, Settings};
+use crate::transport::direct_light::Rays;
 use crate::{Error, Problem, Solution};
 
-/// The pilots: each one's share of the elements of the mesh at last, and of the rays of all pilots.
-const PILOTS: [(f64, f64); 2] = [(1.0 / 16.0, 0.15), (1.0 / 4.0, 0.85)];
-/// Share of the whole work that the pilots may take.
-pub const SHARE: f64 = 0.1;
+/// Share of the elements of the mesh at last that the pilot has.
+const PILOT: f64 = 0.25;
+/// Share of the whole work that the pilot may take.
+pub const SHARE: f64 = 0.08;
+/// Shares of the elements for which direct light is computed, in turn, and of the rays of the solve for each time in an element.
+const STEPS: [f64; 2] = [0.25, 1.0];
+const DIRECT: f64 = 0.12;
+/// Fewest and most rays of an element for direct light.
+const FEWEST_RAYS: f64 = 4.0;
+const MOST_RAYS: f64 = 12.0;
 /// Replicates that a pilot needs: fewer have no error bars.
-pub const LEAST_REPLICATES: u32 = 2;
+const LEAST_REPLICATES: u32 = 2;
+/// Elements have at most so many times the mean area, and at least this share of it: else the deepest shadows would take all elements.
+const LARGEST: f64 = 4.0;
+const SMALLEST: f64 = 1.0 / 512.0;
 /// A mesh is close enough to the number of elements that was asked for from this share of it on.
 const CLOSE: f64 = 0.98;
-/// Trials to meet the number of elements, without balancing and with it.
-const TRIALS: usize = 40;
-const TRIALS_TO_BALANCE: usize = 6;
+/// Trials to meet the number of elements.
+const TRIALS: usize = 8;
+/// Trees grow on to an error this share of the last one.
+const MUCH_LESS: f32 = 0.125;
 
-/// Cuts `scene` into at most `elements` elements, or one for each side of a triangle if these are more, where the light asks for them.
-/// `solve` solves a pilot with a share of the pilots' work, in (0, 1]; if it gives nothing, the mesh is uniform.
+/// What a mesh may cost, and which light it follows.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Rays of the whole solve.
+    pub rays: u64,
+    pub seed: u64,
+    pub light: LightPart,
+}
+
+/// A mesh that follows the light.
+pub struct Followed {
+    pub problem: Problem,
+    /// Rays that it took.
+    pub rays: u64,
+}
+
+/// Cuts `scene` into at most `elements` elements where the light asks for them, or as few as there can be if these are more. `solve` solves the pilot
+/// with the settings it is given; if it gives nothing, the mesh is uniform.
 ///
 /// # Errors
 /// Those of [`Problem::new`] and of `solve`.
 pub fn follow_light<E: From<Error>>(
     scene: Scene,
     elements: u64,
-    mut solve: impl FnMut(&Problem, f64) -> Result<Option<Solution>, E>,
-) -> Result<Problem, E> {
+    effort: Effort,
+    solve: impl FnOnce(&Problem, Settings) -> Result<Option<Solution>, E>,
+) -> Result<Followed, E> {
     if elements > MOST_ELEMENTS {
         return Err(Error::TooManyElements { asked: elements, limit: MOST_ELEMENTS }.into());
     }
-    let least = Resolution::least(&scene);
-    let more = elements.saturating_sub(least);
-    let size = |share: f64| least + (share * more as f64) as u64;
-    let mut problem = Problem::new(scene, Resolution::Elements(size(PILOTS[0].0)))?;
-    if more == 0 {
-        return Ok(problem);
-    }
-    let sizes = PILOTS.iter().skip(1).map(|pilot| pilot.0).chain([1.0]);
-    for ((_, share), next) in PILOTS.into_iter().zip(sizes) {
-        let Some(solution) = solve(&problem, share)? else {
-            return Ok(Problem::new(problem.scene, Resolution::Elements(elements))?);
-        };
-        let cut = adapt(&problem, &solution, size(next))?;
+    let size = |share: f64| ((share * elements as f64) as u64).max(1);
+    let pilot = Problem::new(scene.clone(), Resolution::Clustered(size(PILOT)))?;
+    let solution = solve(&pilot, effort.of_pilot())?;
+    let Some(solution) = solution.filter(|solution| solution.work.replicates >= LEAST_REPLICATES) else {
+        return Ok(Followed { problem: Problem::new(scene, Resolution::Clustered(elements))?, rays: 0 });
+    };
+    let mut rays = solution.work.rays;
+    let indirect = Indirect::new(pilot, &solution);
+    let mut problem = Problem::new(scene, Resolution::Extra(size(STEPS[0])))?;
+    for next in STEPS.into_iter().skip(1).chain([1.0]) {
+        let mut irradiance: Vec<Rgb> = problem.mesh.elements().map(|e| indirect.on(&problem, e)).collect();
+        if effort.light == LightPart::All {
+            let (direct, traced) = light::direct(&problem, effort.of_direct_light(elements), effort.seed);
+            irradiance.iter_mut().zip(direct).for_each(|(light, direct)| *light += direct);
+            rays += traced;
+        }
+        let cut = adapt(&problem, &irradiance, size(next))?;
         problem = problem.cut_anew(&cut)?;
     }
-    Ok(problem)
+    Ok(Followed { problem, rays })
 }
 
-/// How a pilot is solved with so many `rays`: by the default method, whichever solves the mesh at last.
-pub fn pilot_settings(seed: u64, rays: u64, light: LightPart) -> Settings {
-    let method = METHODS[0].method;
-    let replicates = method.natural_replicates();
-    let budget = Budget::Rays(rays.max(u64::from(replicates)));
-    Settings { method, seed, budget, replicates, light, ..Settings::default() }
+impl Effort {
+    /// How the pilot is solved: by the default method, whichever solves the mesh at last.
+    fn of_pilot(self) -> Settings {
+        let method = METHODS[0].method;
+        let replicates = method.natural_replicates();
+        let budget = Budget::Rays(((SHARE * self.rays as f64) as u64).max(u64::from(replicates)));
+        Settings { method, seed: self.seed, budget, replicates, light: LightPart::Indirect, ..Settings::default() }
+    }
+
+    /// Rays of an element for direct light, for a mesh of so many `elements`.
+    fn of_direct_light(self, elements: u64) -> Rays {
+        let rays = (DIRECT * self.rays as f64 / elements as f64).clamp(FEWEST_RAYS, MOST_RAYS);
+        Rays { light: (0.75 * rays) as u32, cosine: (0.25 * rays) as u32 }
+    }
 }
 
-/// How to cut the scene of `problem` into at most `elements` elements, or one for each side of a triangle if these are more, for the light of
-/// `solution`.
+/// How to cut the scene of `problem` into at most `elements` elements, or as few as there can be if these are more, for the
+/// `irradiance` [lux] of its elements.
 ///
 /// # Errors
 /// [`Error::TooManyElements`].
-pub fn adapt(problem: &Problem, solution: &Solution, elements: u64) -> Result<Cut, Error> {
-    let known = Known::of(problem, solution);
-    let mut best = Forest::grown(problem, &known, &Rule::coarsest(problem, elements));
-    // Balancing splits some more, how many is learned.
-    let mut aim = elements;
-    for _ in 0..TRIALS_TO_BALANCE {
-        let mut forest = closest(problem, &known, elements, aim);
-        balance::balance(problem, &mut forest);
-        let count = forest.element_count(problem);
-        if (best.element_count(problem)..=elements).contains(&count) {
-            best = forest;
+pub fn adapt(problem: &Problem, irradiance: &[Rgb], elements: u64) -> Result<Cut, Error> {
+    let light = Light::new(problem, irradiance);
+    let mut largest = LARGEST;
+    loop {
+        let (count, cut) = cut_for_target(problem, &light, elements, largest)?;
+        largest *= 2.0;
+        // Where many small things stand between large walls these have to do with fewer.
+        if count <= elements || largest > elements as f64 {
+            return Ok(cut);
         }
-        if is_close(count, elements) {
+    }
+}
+
+/// A cut with about `elements` elements, more of them only if there cannot be so few, none of them more than `largest` times as large as the mean.
+fn cut_for_target(problem: &Problem, light: &Light, elements: u64, largest: f64) -> Result<(u64, Cut), Error> {
+    let mean = problem.mesh.total_area() / elements as f64;
+    let merges = Merges::of(&problem.scene, light, largest * mean);
+    let mut rule = Rule { error: f32::INFINITY, smallest: SMALLEST * mean, largest: largest * mean };
+    let mut forest = Forest::grown(problem, light, &rule);
+    rule.error = forest.error_of_leaves() / elements as f32;
+    let mut best: Option<(u64, Cut)> = None;
+    // Balancing bisects some more, how many is learned.
+    let mut aim = elements;
+    for _ in 0..TRIALS {
+        let error = grow_for(&mut forest, &mut rule, problem, light, &merges, aim);
+        let (mut balanced, leaders) = (forest.pruned(error), merges.leaders(error));
+        balance::balance(problem, &mut balanced, &leaders);
+        let cut = balanced.cut(leaders);
+        let count = cut.element_count(&problem.scene)? as u64;
+        let fits = count <= elements;
+        if best.as_ref().is_none_or(|&(most, _)| if fits { most > elements || count > most } else { count < most }) {
+            best = Some((count, cut));
+        }
+        if fits && count as f64 >= CLOSE * elements as f64 {
             break;
         }
         aim = (aim as f64 * 0.5 * (1.0 + CLOSE) * elements as f64 / count as f64) as u64;
     }
-    let cut = best.cut();
-    cut.element_count(&problem.scene)?;
-    Ok(cut)
+    best.ok_or(Error::NoSurface)
 }
 
-/// The forest with at most `aim` elements and as close to them as it comes, not balanced.
-fn closest(problem: &Problem, known: &Known, elements: u64, aim: u64) -> Forest {
-    let rule = |error: f64| Rule { error, ..Rule::coarsest(problem, elements) };
-    let count = |error: f64| Forest::count(problem, known, &rule(error));
-    // From an error that nothing exceeds downwards, by steps that make twice as many elements.
-    let mut high = known.error_of_one(problem);
-    let mut low = 0.25 * high;
-    for _ in 0..TRIALS {
-        if count(low) > aim {
-            break;
+/// The error [lux² m²] for which there are at most `aim` elements. Trees are grown no further than that takes.
+fn grow_for(forest: &mut Forest, rule: &mut Rule, problem: &Problem, light: &Light, merges: &Merges, aim: u64) -> f32 {
+    loop {
+        let error = Counts::of(problem, merges, forest).error_of(aim);
+        if error > rule.error || rule.error <= 0.0 {
+            return error;
         }
-        (low, high) = (0.25 * low, low);
-    }
-    for _ in 0..TRIALS {
-        let middle = (low * high).sqrt();
-        let counted = count(middle);
-        *if counted > aim { &mut low } else { &mut high } = middle;
-        if is_close(counted, aim) {
-            break;
+        rule.error *= MUCH_LESS;
+        let before = std::mem::replace(forest, Forest::grown(problem, light, rule));
+        if forest.len() == before.len() {
+            return error;
         }
     }
-    Forest::grown(problem, known, &rule(high))
-}
-
-fn is_close(count: u64, aim: u64) -> bool {
-    count <= aim && count as f64 >= CLOSE * aim as f64
 }
 
 #[cfg(test)]

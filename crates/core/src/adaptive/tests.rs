@@ -1,19 +1,33 @@
 use super::borders::Borders;
+use super::forest::Leaf;
 use super::*;
-use crate::math::Rgb;
+use crate::mesh::cells;
+use crate::sampling::SequenceName;
 use crate::scene::builtin::builtin;
+use crate::solution::Work;
+use crate::transport::{DirectEstimator, LightSampler};
 use crate::view::tests::solution;
 use glam::{Vec2, Vec3};
 
-/// A pilot of a built-in scene under made-up light [lux] at every place [m].
-fn pilot(name: &str, elements: u64, light: impl Fn(Vec3) -> f32) -> (Problem, Solution) {
+/// A hundred rays an element of 20,000.
+const EFFORT: Effort = Effort { rays: 2_000_000, seed: 1, light: LightPart::All };
+
+/// A built-in scene under made-up light [lux] at every place [m].
+fn lit(name: &str, elements: u64, light: impl Fn(Vec3) -> f32) -> (Problem, Vec<Rgb>) {
     let problem = Problem::new(builtin(name).unwrap(), Resolution::Elements(elements)).unwrap();
-    let mean = |e: u32| {
-        let at = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
-        Rgb::grey(light(problem.geometry.surface(problem.mesh.triangle(e), at).0))
-    };
-    let solution = solution(problem.mesh.elements().map(mean).collect());
-    (problem, solution)
+    let irradiance = problem.mesh.elements().map(|e| Rgb::grey(light(middle(&problem, e)))).collect();
+    (problem, irradiance)
+}
+
+/// The scene of `problem` with at most so many elements that follow the `irradiance` [lux].
+fn adapted(problem: &Problem, irradiance: &[Rgb], elements: u64) -> Problem {
+    let cut = adapt(problem, irradiance, elements).unwrap();
+    Problem::with_cut(problem.scene.clone(), &cut).unwrap()
+}
+
+fn middle(problem: &Problem, e: u32) -> Vec3 {
+    let at = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
+    problem.geometry.surface(problem.mesh.triangle(e), at).0
 }
 
 /// Brighter and brighter towards the middle of the floor.
@@ -21,96 +35,171 @@ fn pool(p: Vec3) -> f32 {
     100.0 * (-p.distance_squared(Vec3::new(0.3, 0.0, -0.2))).exp()
 }
 
+/// What each element is wrong by [lux² m²] under `light`.
+fn errors(problem: &Problem, light: impl Fn(Vec3) -> f32) -> Vec<f32> {
+    let error = |e: u32| {
+        let [a, b, c] = problem.mesh.corners(e);
+        let samples: Vec<f32> = (0..cells::count(8))
+            .map(|cell| {
+                let uv = cells::corners(cell, 8).iter().sum::<Vec2>() / 3.0;
+                light(problem.geometry.surface(problem.mesh.triangle(e), a + uv.x * (b - a) + uv.y * (c - a)).0)
+            })
+            .collect();
+        let mean = samples.iter().sum::<f32>() / samples.len() as f32;
+        problem.mesh.area(e) * samples.iter().map(|x| (x - mean).powi(2)).sum::<f32>() / samples.len() as f32
+    };
+    problem.mesh.elements().map(error).collect()
+}
+
 #[test]
 fn the_budget_is_used_and_never_exceeded() {
     for name in ["cornell-box", "cubes"] {
-        let (problem, solution) = pilot(name, 5000, pool);
+        let (problem, light) = lit(name, 5000, pool);
         for elements in [6000, 20_000] {
-            let count = adapt(&problem, &solution, elements).unwrap().element_count(&problem.scene).unwrap() as u64;
+            let count = adapt(&problem, &light, elements).unwrap().element_count(&problem.scene).unwrap() as u64;
             assert!(count <= elements && count as f64 > 0.9 * elements as f64, "{name}: {count} of {elements}");
         }
     }
-    let (problem, solution) = pilot("cubes", 100, pool);
-    let least = Resolution::least(&problem.scene);
-    assert_eq!(adapt(&problem, &solution, 1).unwrap().element_count(&problem.scene).unwrap() as u64, least);
+}
+
+#[test]
+fn the_error_of_equal_numbers_of_elements_is_halved() {
+    // Soft, a slanted edge, and a change in one direction only.
+    let edge = |p: Vec3| if p.x + 0.3 * p.z > 0.4 { 100.0 } else { 1.0 };
+    let slope = |p: Vec3| 100.0 * (-20.0 * (p.x - 0.2).powi(2)).exp();
+    let lights: [(&str, &dyn Fn(Vec3) -> f32); 3] = [("pool", &pool), ("edge", &edge), ("slope", &slope)];
+    for (name, light) in lights {
+        let (problem, irradiance) = lit("cubes", 40_000, light);
+        let adaptive: f32 = errors(&adapted(&problem, &irradiance, 10_000), light).iter().sum();
+        let uniform: f32 = errors(&lit("cubes", 10_000, light).0, light).iter().sum();
+        assert!(adaptive.sqrt() < 0.5 * uniform.sqrt(), "{name}: {} {}", adaptive.sqrt(), uniform.sqrt());
+    }
+}
+
+#[test]
+fn elements_have_equal_errors_where_the_light_is_smooth() {
+    let (problem, irradiance) = lit("cubes", 40_000, pool);
+    let adaptive = adapted(&problem, &irradiance, 10_000);
+    let mut errors = errors(&adaptive, pool);
+    errors.sort_by(f32::total_cmp);
+    let quantile = |q: f64| errors[(q * (errors.len() - 1) as f64) as usize];
+    assert!(quantile(0.9) < 8.0 * quantile(0.4), "{} {}", quantile(0.4), quantile(0.9));
+}
+
+#[test]
+fn elements_are_long_where_light_changes_in_one_direction_only() {
+    let (problem, irradiance) = lit("cubes", 40_000, |p| 100.0 * (-20.0 * (p.x - 0.2).powi(2)).exp());
+    let adaptive = adapted(&problem, &irradiance, 10_000);
+    let (mut along, mut across) = (0.0, 0.0);
+    for e in adaptive.mesh.elements().filter(|&e| adaptive.mesh.normal(e).x.abs() < 0.1) {
+        let corners = adaptive.mesh.corners(e).map(|uv| adaptive.geometry.surface(adaptive.mesh.triangle(e), uv).0);
+        let extent = corners[0].max(corners[1]).max(corners[2]) - corners[0].min(corners[1]).min(corners[2]);
+        (along, across) = (along + extent.y.max(extent.z), across + extent.x);
+    }
+    assert!(along > 1.5 * across, "{along} {across}");
 }
 
 #[test]
 fn neighbours_differ_by_one_level() {
     // A jump along a slanted line: the smallest elements beside the largest.
-    let (problem, solution) = pilot("cubes", 4000, |p| if p.x + 0.3 * p.z > 0.4 { 100.0 } else { 1.0 });
-    let cut = adapt(&problem, &solution, 16_000).unwrap();
-    let problem = problem.cut_anew(&cut).unwrap();
+    let (problem, irradiance) = lit("cubes", 4000, |p| if p.x + 0.3 * p.z > 0.4 { 100.0 } else { 1.0 });
+    let problem = adapted(&problem, &irradiance, 16_000);
     let borders = Borders::of(&problem.scene, problem.geometry.as_ref());
-    let (mut met, mut largest) = (0, 0f32);
+    let (mut met, mut longest) = (0, 0f32);
     for e in problem.mesh.elements() {
-        let leaf = forest::Leaf { triangle: problem.mesh.triangle(e), number: 0, corners: problem.mesh.corners(e) };
-        for (triangle, uv) in balance::probes(&problem, &borders, &leaf) {
-            let neighbour = problem.mesh.at(triangle, uv, false).unwrap();
-            met += usize::from(problem.mesh.triangle(neighbour) != leaf.triangle);
-            largest = largest.max(problem.mesh.area(neighbour) / problem.mesh.area(e));
+        let leaf = Leaf::new(problem.mesh.triangle(e), 0, problem.mesh.corners(e));
+        for balance::Probe { triangle, uv, length } in balance::probes(&problem, &borders, &leaf) {
+            let (neighbour, within) = problem.mesh.locate(triangle, uv, false).unwrap();
+            let other = Leaf::new(triangle, 0, problem.mesh.corners(neighbour));
+            met += usize::from(triangle != leaf.triangle);
+            longest = longest.max(balance::edge_at(&problem, &other, within).1 / length);
         }
     }
-    assert!(met > 100 && largest > 3.9 && largest < 8.1, "{met} across edges, {largest}");
+    assert!(met > 100 && longest > 1.9 && longest < 2.2, "{met} across edges, {longest}");
 }
 
 #[test]
-fn elements_have_equal_errors_where_the_light_is_smooth() {
-    let (problem, solution) = pilot("cubes", 20_000, pool);
-    let cut = adapt(&problem, &solution, 20_000).unwrap();
-    let steep = problem.cut_anew(&cut).unwrap();
-    // The light on the floor and its gradient are known: errors are g² h⁴ in [1/16, 1] of the largest, but for the floor of g.
-    let error = |e: u32| {
-        let at = steep.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
-        let p = steep.geometry.surface(steep.mesh.triangle(e), at).0;
-        let tangent = (p - Vec3::new(0.3, 0.0, -0.2)).reject_from_normalized(steep.mesh.normal(e));
-        (2.0 * pool(p) * tangent.length()).powi(2) * steep.mesh.area(e).powi(2)
+fn triangles_are_put_together_where_the_mesh_is_finer_than_the_light() {
+    let (problem, irradiance) = lit("office", 1, |p| if p.x > 0.0 { 100.0 } else { 50.0 });
+    let sides = Resolution::least(&problem.scene);
+    for elements in [sides / 2, sides + 2000] {
+        let adaptive = adapted(&problem, &irradiance, elements);
+        let count = adaptive.mesh.len() as u64;
+        // Where light does not change at all some are left over.
+        assert!((elements / 2..=elements).contains(&count), "{count} of {elements}");
+        let clusters = adaptive.mesh.elements().filter_map(|e| adaptive.mesh.cluster(e));
+        let one_sided = clusters.map(|cluster| {
+            let at = |t: u32| scene_middle(&adaptive, t).x > 0.0;
+            let first = at(cluster.largest());
+            cluster.triangles().all(|t| at(t) == first)
+        });
+        let of_one_light: Vec<bool> = one_sided.collect();
+        let share = of_one_light.iter().filter(|same| **same).count() as f64 / of_one_light.len() as f64;
+        assert!(of_one_light.len() > 500 && share > 0.97, "{} clusters, {share} in one light", of_one_light.len());
+    }
+}
+
+fn scene_middle(problem: &Problem, t: u32) -> Vec3 {
+    problem.scene.corners(t).into_iter().sum::<Vec3>() / 3.0
+}
+
+#[test]
+fn the_same_light_makes_the_same_mesh() {
+    let (problem, irradiance) = lit("cubes", 4000, pool);
+    assert!(adapt(&problem, &irradiance, 16_000).unwrap() == adapt(&problem, &irradiance, 16_000).unwrap());
+}
+
+#[test]
+fn in_the_dark_elements_are_as_large_as_they_may_be() {
+    let (problem, dark) = lit("box", 1000, |_| 0.0);
+    let dark = adapted(&problem, &dark, 4000);
+    let largest = dark.mesh.elements().map(|e| dark.mesh.area(e)).fold(0.0, f32::max);
+    assert!(dark.mesh.len() <= 4000 && f64::from(largest) <= 1.001 * LARGEST * dark.mesh.total_area() / 4000.0);
+}
+
+/// The same random numbers for all: below a lamp light changes less from element to element than with numbers of their own.
+#[test]
+fn direct_light_of_neighbours_has_the_same_noise() {
+    let problem = Problem::new(builtin("cornell-box").unwrap(), Resolution::Elements(20_000)).unwrap();
+    let rays = EFFORT.of_direct_light(20_000);
+    let (same, traced) = light::direct(&problem, rays, 1);
+    assert!(traced > 0 && same.len() == problem.mesh.len());
+    let (sampler, sequence) = (LightSampler::new(&problem), SequenceName::default().make(1));
+    let mut estimator = DirectEstimator::new(&problem, &sampler, &*sequence);
+    let own: Vec<Rgb> = problem.mesh.elements().map(|e| estimator.irradiance(e, rays).0).collect();
+    let is_floor = |e: u32| problem.mesh.normal(e).y > 0.99 && middle(&problem, e).y < 0.01;
+    let step = |light: &[Rgb]| {
+        let on_floor = problem.mesh.elements().filter(|&e| is_floor(e));
+        let values: Vec<f32> = on_floor.map(|e| light[e as usize].luminance()).collect();
+        let mut steps: Vec<f32> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+        steps.sort_by(f32::total_cmp);
+        steps[steps.len() / 2]
     };
-    let mut errors: Vec<f32> = steep.mesh.elements().map(error).filter(|error| *error > 0.0).collect();
-    errors.sort_by(f32::total_cmp);
-    let quantile = |q: f64| errors[(q * (errors.len() - 1) as f64) as usize];
-    assert!(quantile(0.9) < 32.0 * quantile(0.4), "{} {}", quantile(0.4), quantile(0.9));
-}
-
-#[test]
-fn the_mesh_is_finer_where_light_changes_and_the_same_again() {
-    let edge = |p: Vec3| if p.x > 0.1 { 100.0 } else { 10.0 };
-    let (problem, solution) = pilot("cubes", 4000, edge);
-    let cut = adapt(&problem, &solution, 16_000).unwrap();
-    assert!(adapt(&problem, &solution, 16_000).unwrap() == cut);
-    let uniform = problem.mesh.total_area() as f32 / 16_000.0;
-    let problem = problem.cut_anew(&cut).unwrap();
-    let (mut near, mut far) = (0.0f32, f32::INFINITY);
-    for e in problem.mesh.elements() {
-        let at = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
-        let x = problem.geometry.surface(problem.mesh.triangle(e), at).0.x;
-        if (x - 0.1).abs() < 0.02 && problem.mesh.normal(e).x.abs() < 0.5 {
-            near = near.max(problem.mesh.area(e));
-        } else if (x - 0.1).abs() > 1.0 {
-            far = far.min(problem.mesh.area(e));
-        }
-    }
-    assert!(near < uniform && near < far, "{near} {uniform} {far}");
-}
-
-#[test]
-fn no_light_makes_no_mesh_finer_than_asked() {
-    let (problem, dark) = pilot("box", 1000, |_| 0.0);
-    let count = adapt(&problem, &dark, 4000).unwrap().element_count(&problem.scene).unwrap();
-    assert!((1000..=4000).contains(&count), "{count}");
+    assert!(step(&same) < 0.8 * step(&own), "{} {}", step(&same), step(&own));
+    let sum = |light: &[Rgb]| light.iter().map(|light| light.luminance_f64()).sum::<f64>();
+    assert!((sum(&same) / sum(&own) - 1.0).abs() < 0.05, "{} {}", sum(&same), sum(&own));
 }
 
 #[test]
 fn without_a_pilot_the_mesh_is_uniform() {
     let scene = builtin("cubes").unwrap();
-    let mut calls = 0;
-    let problem = follow_light(scene.clone(), 16_000, |_, _| {
-        calls += 1;
-        Ok::<_, Error>(None)
-    });
-    let problem = problem.unwrap();
-    let uniform = Problem::new(scene.clone(), Resolution::Elements(16_000)).unwrap();
-    assert!(calls == 1 && problem.mesh.cut() == uniform.mesh.cut());
-    let failed = follow_light(scene, 16_000, |_, _| Err(Error::NoSurface));
-    assert!(failed.is_err());
+    let followed = follow_light(scene.clone(), 16_000, EFFORT, |_, _| Ok::<_, Error>(None)).unwrap();
+    let uniform = Problem::new(scene.clone(), Resolution::Clustered(16_000)).unwrap();
+    assert!(followed.rays == 0 && followed.problem.mesh.cut() == uniform.mesh.cut());
+    assert!(follow_light(scene, 16_000, EFFORT, |_, _| Err(Error::NoSurface)).is_err());
+}
+
+#[test]
+fn indirect_light_alone_takes_no_direct_light() {
+    let scene = builtin("cubes").unwrap();
+    let pilot = |problem: &Problem, settings: Settings| {
+        assert!(settings.light == LightPart::Indirect);
+        let irradiance = problem.mesh.elements().map(|e| Rgb::grey(pool(middle(problem, e)))).collect();
+        let solution = solution(irradiance);
+        let work = Work { rays: 7, replicates: 2, ..solution.work };
+        Ok::<_, Error>(Some(Solution { work, ..solution }))
+    };
+    let indirect = Effort { light: LightPart::Indirect, ..EFFORT };
+    assert_eq!(follow_light(scene.clone(), 4000, indirect, pilot).unwrap().rays, 7);
+    assert!(follow_light(scene, 4000, EFFORT, pilot).unwrap().rays > 4000);
 }

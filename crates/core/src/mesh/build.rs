@@ -1,9 +1,9 @@
 //! Cutting a scene into elements.
 
 use super::average::Averages;
+use super::bisection::Division;
 use super::clusters::{Cluster, Clusters};
 use super::cut::Cut;
-use super::parts::PARTS;
 use super::slices::Slices;
 use super::sparse::SparseColors;
 use super::{ElementMesh, Patch, Resolution, Surface, cells, morton, triangle};
@@ -69,7 +69,7 @@ impl ElementMesh {
     }
 
     /// Divides the patches of triangle `t` of `area` [m²].
-    fn divide_triangle(&mut self, area: f64, t: usize, divisions: &mut impl Iterator<Item = u16>) {
+    fn divide_triangle(&mut self, area: f64, t: usize, divisions: &mut impl Iterator<Item = Division>) {
         let Surface { first_patch, slices, .. } = self.surfaces[t];
         for k in 0..slices.patch_count() {
             self.divide(first_patch + k, area * slices.area_share(k), divisions);
@@ -107,9 +107,9 @@ impl ElementMesh {
     fn push_elements(&mut self, averages: &Averages, patch: u32) {
         let first = self.patch.len();
         let whole = &mut self.patches[patch as usize];
-        if whole.is_split() {
-            let parts = whole.first..whole.first + PARTS;
-            return parts.for_each(|part| self.push_elements(averages, part));
+        if whole.is_bisected() {
+            let halves = [whole.first, whole.first + 1];
+            return halves.into_iter().for_each(|half| self.push_elements(averages, half));
         }
         whole.first = first as u32;
         let Patch { triangle, divisions, .. } = *whole;

@@ -166,7 +166,7 @@ impl ElementMesh {
 mod tests {
     use super::*;
     use crate::math::Rgb;
-    use crate::mesh::Resolution;
+    use crate::mesh::{Division, Resolution};
     use crate::scene::Material;
     use crate::scene::builtin::shapes::Builder;
     use glam::Vec3;
@@ -260,7 +260,7 @@ mod tests {
         short.leaders.pop();
         assert!(ElementMesh::with_cut(&scene, &short).is_err());
         let mut cut_finer = cut.clone();
-        cut_finer.divisions[follower] = 2;
+        cut_finer.divisions[follower] = Division::Cells(2);
         assert!(ElementMesh::with_cut(&scene, &cut_finer).is_err());
     }
 }

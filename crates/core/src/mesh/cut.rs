@@ -1,8 +1,8 @@
-//! How the triangles of a scene are cut: across into slices, and each patch regularly, or into four and these again; and which are put
+//! How the triangles of a scene are cut: across into slices, and each patch regularly, or into halves and these again; and which are put
 //! together.
 
+use super::bisection::{Division, MOST_BISECTIONS};
 use super::cells;
-use super::parts::{MOST_SPLITS, PARTS};
 use super::slices::Slices;
 use crate::Error;
 use crate::scene::{Scene, Shape};
@@ -15,9 +15,8 @@ pub const MOST_ELEMENTS: u64 = u32::MAX as u64 - 1;
 pub struct Cut {
     /// For every triangle.
     pub slices: Vec<Slices>,
-    /// For every patch, triangle by triangle: the number m of divisions, which make m² elements a side; or 0, and then the same for
-    /// the four parts into which it is split (see [`super::parts`]).
-    pub divisions: Vec<u16>,
+    /// For every patch, triangle by triangle; after each that is bisected follow those of its halves.
+    pub divisions: Vec<Division>,
     /// For every triangle the least one of its cluster, or its own number; nothing if no triangles are put together.
     pub leaders: Vec<u32>,
 }
@@ -25,7 +24,8 @@ pub struct Cut {
 impl Cut {
     /// No needles and no clusters: triangle `t` is cut into `divisions[t]²` elements a side.
     pub fn regular(divisions: &[u16]) -> Cut {
-        Cut { slices: vec![Slices::WHOLE; divisions.len()], divisions: divisions.to_vec(), leaders: Vec::new() }
+        let cells = divisions.iter().map(|&m| Division::Cells(m));
+        Cut { slices: vec![Slices::WHOLE; divisions.len()], divisions: cells.collect(), leaders: Vec::new() }
     }
 
     /// Number of elements that `scene` is cut into.
@@ -41,7 +41,7 @@ impl Cut {
         let Some(of_side) = self.elements_of_sides() else {
             return parameter(
                 self.divisions.len(),
-                "divisions are needed for each patch, or for its parts, and no more",
+                "divisions are needed for each patch, or for its halves, and no more",
             );
         };
         if !self.leaders.is_empty() && self.leaders.len() != scene.triangles.len() {
@@ -63,7 +63,7 @@ impl Cut {
     }
 
     /// Number of elements into which a side of each triangle is cut, were there no clusters; `None` if the divisions are too few or too
-    /// many, or those of a patch that is split too often.
+    /// many, or wrong, or those of a patch that is bisected too often.
     fn elements_of_sides(&self) -> Option<Vec<u64>> {
         let mut divisions = self.divisions.iter().copied();
         let mut of_side = |slices: &Slices| {
@@ -86,8 +86,8 @@ impl Cut {
     }
 }
 
-/// Elements a side of the patch whose divisions come next; `None` if they end before the patch does, or it is split too often.
-fn elements_of_patch(divisions: &mut impl Iterator<Item = u16>) -> Option<u64> {
+/// Elements a side of the patch whose divisions come next; `None` if they end before the patch does, or it is bisected too often.
+fn elements_of_patch(divisions: &mut impl Iterator<Item = Division>) -> Option<u64> {
     let mut elements = 0u64;
     // How many patches are still to come at each depth.
     let mut left = vec![1];
@@ -98,9 +98,10 @@ fn elements_of_patch(divisions: &mut impl Iterator<Item = u16>) -> Option<u64> {
         }
         *here -= 1;
         match divisions.next()? {
-            0 if left.len() > MOST_SPLITS => return None,
-            0 => left.push(PARTS),
-            m => elements = elements.saturating_add(u64::from(cells::count(m))),
+            Division::Cells(0) | Division::Bisected(3..) => return None,
+            Division::Cells(m) => elements = elements.saturating_add(u64::from(cells::count(m))),
+            Division::Bisected(_) if left.len() > MOST_BISECTIONS => return None,
+            Division::Bisected(_) => left.push(2),
         }
     }
     Some(elements)

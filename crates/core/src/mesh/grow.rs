@@ -7,6 +7,7 @@
 //! follow each other along a space-filling curve. What is left between clusters, less than a quarter of one, joins the smallest
 //! neighbour that bears it. Greedy, as in the partitioning of finite elements (Farhat 1988). O(n log n), deterministic.
 
+use super::bisection::Division;
 use super::cut::Cut;
 use super::slices::Slices;
 use super::{morton, triangle};
@@ -71,7 +72,7 @@ impl Neighbourhood {
                 may_join: scene.shape == Shape::Triangles && !scene.material_of(t).is_emitter(),
             }
         };
-        let mut pairs = neighbours(scene);
+        let mut pairs = triangle_neighbours(scene);
         pairs.extend(pairs.clone().into_iter().map(|(a, b)| (b, a)));
         pairs.sort_unstable();
         pairs.dedup();
@@ -110,7 +111,7 @@ impl Neighbourhood {
         let mut divisions = cut.divisions.iter();
         let mut is_whole = |slices: &Slices| {
             let patches = slices.patch_count() as usize;
-            divisions.by_ref().take(patches).all(|&m| m == 1) && patches == 1
+            divisions.by_ref().take(patches).all(|&division| division == Division::Cells(1)) && patches == 1
         };
         let whole = cut.slices.iter().map(&mut is_whole);
         let small = |facet: &Facet| facet.may_join && facet.area.length() <= 0.5 * normal;
@@ -185,7 +186,7 @@ impl Region {
 }
 
 /// Pairs of triangles of one object that share an edge; corners at the same place are one.
-fn neighbours(scene: &Scene) -> Vec<(u32, u32)> {
+pub fn triangle_neighbours(scene: &Scene) -> Vec<(u32, u32)> {
     let (low, high) = scene.bounds();
     let mut weld = Weld::new((weld::TOLERANCE * 0.5 * low.distance(high)).max(f32::MIN_POSITIVE));
     let mut edges = Vec::with_capacity(3 * scene.triangles.len());

@@ -2,7 +2,7 @@
 //!
 //! A point leads to its triangle, which leads to its patch: two tables, and with rays that end here and there both are read in
 //! no order. One point after the other, each reading waits for memory. So each table is read for all points before anything is
-//! computed: then the processor waits for many readings at once. Patches that are split are gone down together, too.
+//! computed: then the processor waits for many readings at once. Patches that are bisected are gone down together, too.
 
 use super::{ElementMesh, Patch, Surface, cells};
 use glam::{Vec2, Vec3};
@@ -42,10 +42,10 @@ impl ElementMesh {
         for (patch, &(number, _)) in patches.iter_mut().zip(&on_patch[..count]) {
             *patch = self.patches[number as usize];
         }
-        while patches[..count].iter().any(Patch::is_split) {
-            let split = patches[..count].iter_mut().zip(&mut on_patch).filter(|(patch, _)| patch.is_split());
-            for (patch, on_patch) in split {
-                *on_patch = patch.part_at(on_patch.1);
+        while patches[..count].iter().any(Patch::is_bisected) {
+            let bisected = patches[..count].iter_mut().zip(&mut on_patch).filter(|(patch, _)| patch.is_bisected());
+            for (patch, on_patch) in bisected {
+                *on_patch = patch.half_at(on_patch.1);
                 *patch = self.patches[on_patch.0 as usize];
             }
         }
@@ -65,7 +65,7 @@ impl Surface {
 }
 
 impl Patch {
-    pub(super) const NONE: Patch = Patch { triangle: 0, first: 0, divisions: 1, element_area: 0.0 };
+    pub(super) const NONE: Patch = Patch { triangle: 0, first: 0, divisions: 1, from: 0, element_area: 0.0 };
 }
 
 #[cfg(test)]

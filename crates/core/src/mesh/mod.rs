@@ -1,7 +1,7 @@
 //! Elements: the small pieces of surface that carry one radiosity each.
 //!
 //! Surfaces are traced, elements are scored. A triangle is one *patch*, or if it is a needle several (see [`slices`]); a patch
-//! with `m` divisions is cut into `m²` congruent elements (see [`cells`]), or split into four patches (see [`parts`]). So a hit's
+//! with `m` divisions is cut into `m²` congruent elements (see [`cells`]), or bisected, and the halves again (see [`bisection`]). So a hit's
 //! barycentric coordinates lead to its element in O(1), or O(depth) where the mesh follows the light, and area and normal need no storage
 //! of their own. Where triangles are smaller than elements should be, an element is a *cluster* of whole triangles instead (see
 //! [`clusters`]), each of which is a patch of one cell. A two-sided triangle has two sets of elements back to back. Elements
@@ -9,6 +9,7 @@
 //! in the order of elements have sorted origins.
 
 mod average;
+mod bisection;
 mod build;
 pub mod cells;
 mod clip;
@@ -19,34 +20,33 @@ mod locate;
 mod lookup;
 mod mip;
 mod morton;
-mod parts;
 mod resolution;
 mod slices;
 mod sparse;
 mod triangle;
 
+pub use bisection::{Division, MOST_BISECTIONS, halved, halves};
 pub use clusters::{Cluster, Piece};
 pub use cut::{Cut, MOST_ELEMENTS};
+pub(crate) use grow::triangle_neighbours;
 pub use locate::{Point, TOGETHER};
 pub use lookup::{LANES, Lookup};
-pub use parts::{MOST_SPLITS, PARTS};
 pub use resolution::Resolution;
-pub(crate) use resolution::slices;
 pub use slices::Slices;
 pub(crate) use triangle::surface_area;
 
 use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
+use bisection::Part;
 use clusters::Clusters;
 use glam::{Vec2, Vec3};
-use parts::Part;
 use sparse::SparseColors;
 
 /// Elements of all triangles, struct of arrays, 16 bytes an element and 12 more if it emits light.
 #[derive(Clone, Debug)]
 pub struct ElementMesh {
     surfaces: Vec<Surface>,
-    /// Those of each triangle in turn, then four for each that is split.
+    /// Those of each triangle in turn, then the halves of each that is bisected.
     patches: Vec<Patch>,
     /// Where the patches lie that are parts of others, the last ones.
     parts: Vec<Part>,
@@ -66,14 +66,16 @@ struct Surface {
     normal: Vec3,
 }
 
-/// A part of a triangle that is cut regularly: first the elements of its front, then those of its back; or split.
+/// A part of a triangle that is cut regularly: first the elements of its front, then those of its back; or bisected.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
     triangle: u32,
-    /// The first of its elements, or of the parts into which it is split.
+    /// The first of its elements, or of its halves.
     first: u32,
-    /// None if it is split.
+    /// None if it is bisected.
     divisions: u16,
+    /// The corner from which it is bisected.
+    from: u8,
     /// Area of each element [m²]; of a cluster that of all its triangles.
     element_area: f32,
 }
@@ -174,9 +176,9 @@ impl ElementMesh {
         self.leaf_at(surface.first_patch + patch, within)
     }
 
-    /// Numbers of the patches that have elements, in ascending order: all but those that are split.
+    /// Numbers of the patches that have elements, in ascending order: all but those that are bisected.
     pub fn patches(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..).zip(&self.patches).filter(|(_, patch)| !patch.is_split()).map(|(number, _)| number)
+        (0..).zip(&self.patches).filter(|(_, patch)| !patch.is_bisected()).map(|(number, _)| number)
     }
 
     /// Triangle on which `patch` lies.
@@ -184,7 +186,7 @@ impl ElementMesh {
         self.patches[patch as usize].triangle
     }
 
-    /// Number of divisions along each edge of `patch`; 0 if it is split.
+    /// Number of divisions along each edge of `patch`; 0 if it is bisected.
     pub fn divisions(&self, patch: u32) -> u16 {
         self.patches[patch as usize].divisions
     }
@@ -244,7 +246,8 @@ impl ElementMesh {
     pub fn areas(&self) -> impl Iterator<Item = (f32, u32)> + Clone + '_ {
         let sides = |patch: &Patch| if self.is_two_sided(patch.triangle) { 2 } else { 1 };
         // Of the patches of a cluster only the one that stands for it.
-        let counts = |(number, patch): &(u32, &Patch)| !patch.is_split() && self.patch[patch.first as usize] == *number;
+        let counts =
+            |(number, patch): &(u32, &Patch)| !patch.is_bisected() && self.patch[patch.first as usize] == *number;
         let patches = (0..).zip(&self.patches).filter(counts);
         patches.map(move |(_, patch)| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
     }

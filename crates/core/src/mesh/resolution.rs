@@ -1,5 +1,6 @@
 //! How finely each triangle is cut.
 
+use super::bisection::Division;
 use super::cut::{Cut, MOST_ELEMENTS, sides};
 use super::grow::Neighbourhood;
 use super::slices::Slices;
@@ -137,7 +138,7 @@ fn least_edge([shortest, longest]: [f64; 2], steps: u32, few: impl Fn(f64) -> bo
 fn cut(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16) -> Cut {
     let slices: Vec<Slices> = (0..scene.triangles.len() as u32).map(|t| slices(scene.corners(t), edge)).collect();
     let patches = slices.iter().enumerate().flat_map(|(t, &slices)| patches(scene.corners(t as u32), slices));
-    let divisions = patches.map(of_patch).collect();
+    let divisions = patches.map(of_patch).map(Division::Cells).collect();
     Cut { slices, divisions, leaders: Vec::new() }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A T-vertex of one side lies between two vertices of the other. Values are interpolated linearly between vertices, so it
 //! would bend the light along the edge on its own side only, which shows as a seam across a flat wall. So it takes the
-//! value that the longer piece of edge has where it lies ([`t_vertices`]). And a program that draws triangles leaves pinholes
+//! value that the piece of edge has where it lies ([`t_vertices`]), the longest if there are several. And a program that draws triangles leaves pinholes
 //! along such an edge, whatever the angle, unless both sides have the same vertices there ([`EdgePoints`]).
 
 use super::contacts::Contacts;
@@ -12,6 +12,7 @@ use super::vertices::{Vertices, group_by};
 use crate::Problem;
 use crate::math::weld;
 use glam::{IVec3, Vec2, Vec3};
+use std::collections::BTreeMap;
 
 /// A vertex that takes the value `(1 - t) value[from] + t value[to]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,17 +35,53 @@ pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
         &pieces,
         |v| vertices.position(v),
         |piece, end, t| {
-            // Strictly longer than any piece at the vertex: so what a vertex depends on hangs on a longer piece yet, and
-            // going from long to short settles all of them.
-            if piece.length > 1.001 * end.longest && end.normal.dot(piece.normal) > CREASE_ANGLE.cos() {
+            if end.normal.dot(piece.normal) > CREASE_ANGLE.cos() {
                 found.push((piece.length, TVertex { vertex: end.key, from: piece.from, to: piece.to, t }));
             }
         },
     );
     found.sort_by(|(long, x), (longer, y)| longer.total_cmp(long).then((x.vertex, x.from).cmp(&(y.vertex, y.from))));
-    let mut taken = vec![false; vertices.len()];
-    found.retain(|(_, t)| !std::mem::replace(&mut taken[t.vertex as usize], true));
-    found.into_iter().map(|(_, t)| t).collect()
+    in_order(hanging(found.into_iter().map(|(_, t)| t)))
+}
+
+/// Of `found`, in the order of preference, one for each vertex, as long as none hangs on itself: where thirds meet quarters the quarters hang on the
+/// thirds, and these stay where they are.
+fn hanging(found: impl Iterator<Item = TVertex>) -> BTreeMap<u32, TVertex> {
+    let mut hanging: BTreeMap<u32, TVertex> = BTreeMap::new();
+    for t in found {
+        let mut below = vec![t.from, t.to];
+        let mut is_free = !hanging.contains_key(&t.vertex);
+        while let Some(vertex) = below.pop().filter(|_| is_free) {
+            is_free = vertex != t.vertex;
+            below.extend(hanging.get(&vertex).into_iter().flat_map(|on| [on.from, on.to]));
+        }
+        if is_free {
+            hanging.insert(t.vertex, t);
+        }
+    }
+    hanging
+}
+
+/// Each after those on which it hangs.
+fn in_order(mut hanging: BTreeMap<u32, TVertex>) -> Vec<TVertex> {
+    let mut ordered = Vec::with_capacity(hanging.len());
+    while let Some((&first, _)) = hanging.first_key_value() {
+        let mut waiting = vec![first];
+        while let Some(&vertex) = waiting.last() {
+            let Some(&t) = hanging.get(&vertex) else {
+                waiting.pop();
+                continue;
+            };
+            let below = [t.from, t.to].into_iter().filter(|end| hanging.contains_key(end));
+            let before = waiting.len();
+            waiting.extend(below);
+            if waiting.len() == before {
+                hanging.remove(&vertex);
+                ordered.push(t);
+            }
+        }
+    }
+    ordered
 }
 
 /// The places that lie on an edge of an element between its ends.

@@ -66,11 +66,11 @@ impl VertexField {
         field
     }
 
-    /// A first look at a solution that is still being computed: means at the vertices, no noise taken out and no seam closed. On
-    /// the vertices of `earlier`, a field of the same problem, if there is one.
-    pub fn draft(problem: &Problem, solution: &Solution, earlier: Option<VertexField>) -> VertexField {
+    /// A first look at `irradiance` [lux] of the elements that is still being computed: means at the vertices, no noise taken out and no seam
+    /// closed. On the vertices of `earlier`, a field of the same problem, if there is one.
+    pub fn draft(problem: &Problem, irradiance: &[Rgb], earlier: Option<VertexField>) -> VertexField {
         let vertices = earlier.map_or_else(|| Vertices::new(problem), |field| field.vertices);
-        VertexField::of_values(problem, vertices, &solution.irradiance, &vec![1.0; problem.mesh.len()])
+        VertexField::of_values(problem, vertices, irradiance, &vec![1.0; problem.mesh.len()])
     }
 
     /// Means at the vertices of `values` [lux] of the elements, of whose areas the shares `open` count.

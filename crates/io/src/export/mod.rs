@@ -78,7 +78,7 @@ impl<'a> LitScene<'a> {
     /// is enough.
     fn field_of(&self, solution: &Solution, earlier: Option<VertexField>) -> VertexField {
         match &self.draft {
-            Some(_) => VertexField::draft(self.problem, solution, earlier),
+            Some(_) => VertexField::draft(self.problem, &solution.irradiance, earlier),
             None if self.smoothing == Smoothing::None => VertexField::as_computed(self.problem, solution),
             None => VertexField::new(self.problem, solution),
         }

@@ -2,15 +2,16 @@
 //!
 //! `mesh [ELEMENTS...]` (10,000 in the built-in rooms and 100,000 in the living room, more than one for each side of a triangle). The error of a
 //! mesh is the RMS over the area of what a reference differs from its means over the elements, relative to the mean irradiance; *interpolated*, from
-//! the field of vertices with those means. The reference is uniform with 16 times as many elements, and solved twice with 50 rays an element: the mean product of
-//! what both differ from their means has no noise in it. Pilots have a tenth of the rays that the mesh would be solved with, so chance is in the meshes: three seeds, the RMS of
-//! their errors. *Known light* is the gain of a mesh that is made of the reference itself: what pilots with little noise would find.
+//! the field of vertices with those means. The reference is uniform with 16 times as many elements, and solved twice with 50 rays an element: the mean
+//! product of what both differ from their means has no noise in it. *Uniform* cuts every triangle for itself; *with clusters*, as `isolux solve --mesh
+//! uniform` does it, puts small ones together whatever the light. Three seeds of adaptive meshes, the RMS of their errors; *rays* are what it took to find
+//! them, as a share of the hundred an element that a solve takes.
 
 #![allow(clippy::print_stdout)]
 
 use anyhow::Result;
 use glam::Vec2;
-use isolux_core::adaptive::{SHARE, adapt, follow_light, pilot_settings};
+use isolux_core::adaptive::{Effort, Followed, follow_light};
 use isolux_core::math::Rgb;
 use isolux_core::mesh::{ElementMesh, Resolution};
 use isolux_core::run::run;
@@ -18,7 +19,7 @@ use isolux_core::scene::Scene;
 use isolux_core::scene::builtin::builtin;
 use isolux_core::solvers::MonteCarlo;
 use isolux_core::solvers::budget::RAYS_PER_ELEMENT;
-use isolux_core::solvers::monte_carlo::LightPart;
+use isolux_core::solvers::monte_carlo::{Budget, LightPart, Settings};
 use isolux_core::view::VertexField;
 use isolux_core::{Problem, Solution};
 use isolux_testing::reference::scenes_folder;
@@ -35,9 +36,9 @@ fn main() -> Result<()> {
     let asked: Vec<u64> = std::env::args().skip(1).map(|text| text.parse()).collect::<Result<_, _>>()?;
     let elements = |default: u64| if asked.is_empty() { vec![default] } else { asked.clone() };
     println!(
-        "| room | elements | uniform | adaptive | gain | known light | interpolated: uniform | adaptive | gain | mesh found in |"
+        "| room | elements | uniform | with clusters | adaptive | gain | interpolated: uniform | adaptive | gain | rays | found in |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
     for name in ["cornell-box", "cubes"] {
         measure(name, &builtin(name)?, &elements(ELEMENTS))?;
     }
@@ -52,46 +53,45 @@ fn main() -> Result<()> {
 }
 
 fn measure(name: &str, scene: &Scene, elements: &[u64]) -> Result<()> {
-    let least = Resolution::least(scene);
     for &more in elements {
         let fine = Problem::new(scene.clone(), Resolution::Extra(FINER * more))?;
         let rays = RAYS_PER_ELEMENT / 2 * fine.mesh.len() as u64;
-        let solutions = [solve(&fine, rays, 1 << 32)?, solve(&fine, rays, 1 << 33)?];
+        let of_seed = |seed| solve(&fine, Settings { seed, budget: Budget::Rays(rays), ..Settings::default() });
+        let solutions = [of_seed(1 << 32)?, of_seed(1 << 33)?];
         let reference = Reference { fine, solutions };
         let uniform = Problem::new(scene.clone(), Resolution::Extra(more))?;
+        let count = uniform.mesh.len() as u64;
         let [constant, interpolated] = reference.errors(&uniform);
-        let known = adapt(&reference.fine, &reference.solutions[0], uniform.mesh.len() as u64)?;
-        let [known, _] = reference.errors(&Problem::with_cut(scene.clone(), &known)?);
-        let (mut squares, mut seconds, mut used) = ([0.0; 2], 0.0, 0);
+        let [clustered, _] = reference.errors(&Problem::new(scene.clone(), Resolution::Clustered(count))?);
+        let (mut squares, mut seconds, mut taken, mut used) = ([0.0; 2], 0.0, 0, 0);
         for seed in SEEDS {
             let start = Instant::now();
-            let rays = SHARE * (RAYS_PER_ELEMENT * (least + more)) as f64;
-            let pilot = |problem: &Problem, share: f64| solve(problem, (share * rays) as u64, seed).map(Some);
-            let adaptive = follow_light(scene.clone(), uniform.mesh.len() as u64, pilot)?;
+            let effort = Effort { rays: RAYS_PER_ELEMENT * count, seed, light: LightPart::All };
+            let pilot = |problem: &Problem, settings: Settings| solve(problem, settings).map(Some);
+            let Followed { problem: adaptive, rays } = follow_light(scene.clone(), count, effort, pilot)?;
             seconds += start.elapsed().as_secs_f64() / SEEDS.len() as f64;
-            used = adaptive.mesh.len();
+            (taken, used) = (taken + rays, adaptive.mesh.len());
             let errors = reference.errors(&adaptive);
             squares.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error * error / SEEDS.len() as f64);
         }
         let [adaptive, field] = squares.map(f64::sqrt);
         let percent = |x: f64| format!("{:.2} %", 100.0 * x);
         println!(
-            "| {name} | {} ({used}) | {} | {} | {:.2} | {:.2} | {} | {} | {:.2} | {seconds:.1} s |",
-            uniform.mesh.len(),
+            "| {name} | {count} ({used}) | {} | {} | {} | {:.2} | {} | {} | {:.2} | {:.0} % | {seconds:.1} s |",
             percent(constant),
+            percent(clustered),
             percent(adaptive),
             constant / adaptive,
-            constant / known,
             percent(interpolated),
             percent(field),
             interpolated / field,
+            100.0 * taken as f64 / (SEEDS.len() as u64 * RAYS_PER_ELEMENT * count) as f64,
         );
     }
     Ok(())
 }
 
-fn solve(problem: &Problem, rays: u64, seed: u64) -> Result<Solution> {
-    let settings = pilot_settings(seed, rays, LightPart::All);
+fn solve(problem: &Problem, settings: Settings) -> Result<Solution> {
     Ok(run(&mut MonteCarlo::new(problem, settings)?, problem, |_| ControlFlow::Continue(())))
 }
 

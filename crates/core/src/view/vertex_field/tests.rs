@@ -1,6 +1,6 @@
 use super::super::plastic;
 use super::*;
-use crate::mesh::{Cut, Slices};
+use crate::mesh::{Cut, Division, Slices};
 use crate::scene::{Material, Object, Scene, Triangle, Vertex};
 use crate::view::tests::solution;
 
@@ -57,10 +57,12 @@ fn a_flat_wall_has_no_seam_where_divisions_differ() {
 }
 
 #[test]
-fn a_flat_wall_has_no_seam_where_patches_are_split() {
-    // Each half split unevenly, twice and three times; beside whole parts that are cut finer and coarser.
-    let split = vec![0, 0, 1, 0, 2, 1, 4, 1, 1, 2, 4, 1, 1, 0, 0, 1, 1, 1, 2, 1, 1, 8];
-    let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: split, leaders: Vec::new() };
+fn a_flat_wall_has_no_seam_where_patches_are_bisected() {
+    // Each triangle bisected unevenly; beside whole parts that are cut finer and coarser.
+    let (bisected, cells) = (Division::Bisected, Division::Cells);
+    let first = [bisected(0), bisected(1), cells(1), bisected(2), cells(2), cells(1), bisected(0), cells(4), cells(1)];
+    let second = [bisected(1), cells(1), bisected(0), cells(2), bisected(1), bisected(2), cells(1), cells(1), cells(8)];
+    let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: [first, second].concat(), leaders: Vec::new() };
     let (problem, field) = field_of_cut(square(), &cut, |p| 10.0 + 3.0 * p.x - p.y + 2.0 * (9.0 * p.x * p.y).sin());
     let mesh = &problem.mesh;
     let light = |triangle, uv| field.irradiance_at(&problem, triangle, uv, false).g;
@@ -106,7 +108,8 @@ fn a_draft_of_light_without_noise_is_the_field_whoever_had_its_vertices_before()
         Rgb::grey(10.0 + problem.geometry.surface(problem.mesh.triangle(e), at).0.x)
     };
     let light = solution(problem.mesh.elements().map(mean).collect());
-    let draft = VertexField::draft(&problem, &light, Some(VertexField::draft(&problem, &dark, None)));
+    let draft =
+        VertexField::draft(&problem, &light.irradiance, Some(VertexField::draft(&problem, &dark.irradiance, None)));
     assert!(field.len() == draft.len() && (0..field.len() as u32).all(|v| field.irradiance(v) == draft.irradiance(v)));
 }
 

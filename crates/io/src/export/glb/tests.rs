@@ -1,6 +1,6 @@
 use super::*;
 use isolux_core::Solution;
-use isolux_core::mesh::{Cut, Slices};
+use isolux_core::mesh::{Cut, Division, Slices};
 use isolux_core::scene::{Material, Scene, Triangle, Vertex};
 
 /// Two halves of a two-sided unit square with a texture of one dark texel; `light` [lux] in front and behind.
@@ -93,9 +93,11 @@ fn edges_between_different_divisions_share_all_vertices() {
 }
 
 #[test]
-fn edges_of_split_patches_share_all_vertices() {
-    let split = vec![0, 0, 1, 0, 2, 1, 4, 1, 1, 2, 4, 1, 1, 0, 0, 1, 1, 1, 2, 1, 1, 8];
-    let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: split, leaders: Vec::new() };
+fn edges_of_bisected_patches_share_all_vertices() {
+    let (bisected, cells) = (Division::Bisected, Division::Cells);
+    let first = [bisected(0), bisected(1), cells(1), bisected(2), cells(2), cells(1), bisected(0), cells(4), cells(1)];
+    let second = [bisected(1), cells(1), bisected(0), cells(2), bisected(1), bisected(2), cells(1), cells(1), cells(8)];
+    let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: [first, second].concat(), leaders: Vec::new() };
     let (all, _) = faces(&square_cut(&cut, [20.0, 0.0]));
     let key = |p: Vec3| ((p.x * 1e5).round() as i32, (p.y * 1e5).round() as i32);
     let mut edges = std::collections::BTreeMap::new();

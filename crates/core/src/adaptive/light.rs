@@ -1,0 +1,99 @@
+//! What is known of the light anywhere on the surface, before the mesh is there that it is to be solved on.
+//!
+//! Direct light changes within centimetres and costs little: it is computed for every element of a first mesh, with the *same* random numbers in
+//! all of them. What an estimate is wrong by is then nearly the same next door, so light changes from element to element where it really
+//! does, and not because of noise. Indirect light changes slowly: it is that of a *pilot*, a quick solution on large elements, after noise was
+//! taken out as far as its error bars allow. Both are interpolated between vertices ([`VertexField`]), so it is known which way light changes
+//! within an element, too.
+
+use crate::math::Rgb;
+use crate::sampling::{Sample, Sequence, SequenceName};
+use crate::transport::LightSampler;
+use crate::transport::direct_light::{DirectEstimator, Rays};
+use crate::view::{VertexField, smooth};
+use crate::{Problem, Solution};
+use glam::Vec2;
+use rayon::prelude::*;
+
+/// Elements that are computed in turn.
+const PIECE: usize = 256;
+
+/// Light that changes slowly, of a pilot.
+pub struct Indirect {
+    problem: Problem,
+    field: VertexField,
+}
+
+impl Indirect {
+    pub fn new(problem: Problem, solution: &Solution) -> Indirect {
+        let field = VertexField::draft(&problem, &smooth(&problem, solution).irradiance, None);
+        Indirect { problem, field }
+    }
+
+    /// Irradiance [lux] in the middle of element `e` of another mesh of the same scene.
+    pub fn on(&self, other: &Problem, e: u32) -> Rgb {
+        let place = other.mesh.place(e);
+        let middle = other.mesh.corners_at(place).iter().sum::<Vec2>() / 3.0;
+        self.field.irradiance_at(&self.problem, place.triangle, middle, place.back)
+    }
+}
+
+/// Direct irradiance [lux] of the elements of `problem`, each of which sends so many `rays`, and the number of rays traced. The numbers are those of
+/// `seed`.
+pub fn direct(problem: &Problem, rays: Rays, seed: u64) -> (Vec<Rgb>, u64) {
+    let sequence = Same(SequenceName::default().make(seed));
+    let sampler = LightSampler::new(problem);
+    let elements: Vec<u32> = problem.mesh.elements().collect();
+    let piece = |elements: &[u32]| {
+        let mut estimator = DirectEstimator::new(problem, &sampler, &sequence);
+        elements.iter().map(|&e| estimator.irradiance(e, rays)).collect::<Vec<(Rgb, u64)>>()
+    };
+    let pieces: Vec<Vec<(Rgb, u64)>> = elements.par_chunks(PIECE).map(piece).collect();
+    let traced = pieces.iter().flatten().map(|(_, rays)| rays).sum();
+    (pieces.into_iter().flatten().map(|(light, _)| light).collect(), traced)
+}
+
+/// The same numbers for every element.
+struct Same(Box<dyn Sequence>);
+
+/// Streams of an element, see [`DirectEstimator::new`].
+const STREAMS: u64 = 3;
+
+impl Sequence for Same {
+    fn fill(&self, stream: u64, first: u64, points: &mut [Sample]) {
+        self.0.fill(stream % STREAMS, first, points);
+    }
+
+    fn number(&self, stream: u64, index: u64, dimension: u32) -> f32 {
+        self.0.number(stream % STREAMS, index, dimension)
+    }
+}
+
+/// Light that is known for the elements of a mesh.
+pub struct Light<'a> {
+    problem: &'a Problem,
+    field: VertexField,
+    /// Number of elements on a side of each triangle.
+    elements: Vec<u32>,
+}
+
+impl Light<'_> {
+    /// Of the `irradiance` [lux] of its elements.
+    pub fn new<'a>(problem: &'a Problem, irradiance: &[Rgb]) -> Light<'a> {
+        let mut elements = vec![0; problem.scene.triangles.len()];
+        for e in problem.mesh.elements() {
+            elements[problem.mesh.triangle(e) as usize] += u32::from(!problem.mesh.place(e).back);
+        }
+        Light { problem, field: VertexField::draft(problem, irradiance, None), elements }
+    }
+
+    /// Irradiance [lux] on the front and on the back at barycentric coordinates `uv` of `triangle`.
+    pub fn at(&self, triangle: u32, uv: Vec2) -> [f32; 2] {
+        [false, true].map(|back| self.field.irradiance_at(self.problem, triangle, uv, back).luminance())
+    }
+
+    /// Number of elements on a side of `triangle` for which light is known.
+    pub fn elements_on(&self, triangle: u32) -> u32 {
+        self.elements[triangle as usize]
+    }
+}
