@@ -6,6 +6,7 @@
 #   make test-python   those of the Python package: needs Python 3.10 or later, and is skipped without
 #   make bench   speed of the ray kernel and of global lines, into docs/performance.md
 #                EMBREE=1 puts Embree beside it, which needs Debian's libembree-dev (apt-get install libembree-dev)
+#   make bench-viewer   how fast a page of a million elements is drawn without a graphics card, and how much of that is its script
 #   make studies                  the nine published experiments and the study of speed in full: two hours
 #   make study-reference-rooms    real rooms against an independent renderer
 #   make growth                   time to a fixed accuracy from 10^4 to 10^6 elements, in two rooms
@@ -18,7 +19,7 @@ ISOLUX = target/release/isolux
 
 STUDIES = order lines walk sequences form-factor-variance warm-up variance cost ray-count speed
 
-.PHONY: demo test test-python run-test-python bench lint build viewer test-viewer studies growth study-reference-rooms study-methods study-smoothing study-mesh study-clusters
+.PHONY: demo test test-python run-test-python bench bench-viewer lint build viewer test-viewer studies growth study-reference-rooms study-methods study-smoothing study-mesh study-clusters
 
 build: viewer
 	cargo build --release --locked
@@ -79,6 +80,11 @@ run-test-python:
 bench:
 	BENCH_REPORT=$(CURDIR)/docs/performance.md BENCH_DATE=$$(date +%F) CRITERION_HOME=$(CURDIR)/target/criterion \
 	cargo bench --locked --workspace $(if $(EMBREE),--features isolux-testing/embree) --bench speed --bench lines
+
+bench-viewer: build
+	@mkdir -p out
+	$(ISOLUX) solve office --elements 1e6 --rays 20M --quiet -o out/million.html
+	cd viewer && node bench.mjs ../out/million.html
 
 lint:
 	cargo fmt --all --check

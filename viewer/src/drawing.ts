@@ -1,9 +1,10 @@
-// The surfaces of a solution in three.js: a mesh with a draw call for each batch, and the light on it.
+// The surfaces of a solution in three.js: a mesh with draw calls for each batch, and the light on it.
 
 import {
-  BufferAttribute, BufferGeometry, ClampToEdgeWrapping, type DataTexture, GLSL3, type IUniform, Mesh, MirroredRepeatWrapping,
-  RawShaderMaterial, RepeatWrapping, Scene, SRGBColorSpace, Texture, Vector3, type WebGLRenderer,
+  BufferAttribute, BufferGeometry, ClampToEdgeWrapping, type DataTexture, GLSL3, type IUniform, type Material, Mesh, MirroredRepeatWrapping,
+  type PerspectiveCamera, RawShaderMaterial, RepeatWrapping, Scene, SRGBColorSpace, Texture, Vector3, type WebGLRenderer,
 } from "three";
+import { Chunks } from "./chunks";
 import { luminance, toLinear } from "./colour";
 import type { Light } from "./light";
 import { gather, provoke } from "./provoking";
@@ -24,8 +25,9 @@ interface Image {
 export class Drawing {
   readonly surfaces: Surfaces;
   light: Light;
-  readonly scene = new Scene();
-  readonly geometry = new BufferGeometry();
+  private readonly scene = new Scene();
+  private readonly geometry = new BufferGeometry();
+  private readonly chunks: Chunks;
   /** Of every element: irradiance [lux], and the standard error of its luminance. */
   readonly elements: DataTexture;
   /** Luminance [lux] of the irradiance of every element, and its standard error. */
@@ -42,6 +44,7 @@ export class Drawing {
     this.seen = new Float32Array(surfaces.areas.length);
     for (const e of surfaces.elementOf) this.seen[e] = surfaces.areas[e]!;
     this.elements = elementTexture(surfaces.header.elements, renderer.capabilities.maxTextureSize);
+    this.chunks = other && other.surfaces === surfaces ? other.chunks : new Chunks(surfaces);
     this.source = other && other.surfaces === surfaces ? this.borrow(other) : this.build(provokingCorner(renderer));
     this.geometry.setAttribute("irradiance", new BufferAttribute(new Float32Array(3 * this.source.length), 3));
   }
@@ -76,7 +79,6 @@ export class Drawing {
     const materials: RawShaderMaterial[] = [];
     const images = new Map<string, Promise<Image>>();
     for (const batch of surfaces.header.batches) {
-      drawing.geometry.addGroup(3 * batch.first, 3 * batch.count, materials.length);
       materials.push(await drawing.material(batch, images, renderer, other));
     }
     const mesh = new Mesh(drawing.geometry, materials);
@@ -85,6 +87,13 @@ export class Drawing {
     drawing.scene.add(mesh);
     drawing.relight();
     return drawing;
+  }
+
+  /** Draws what `camera` sees of it; everything in `material`, if one is given. */
+  draw(renderer: WebGLRenderer, camera: PerspectiveCamera, material: Material | null = null): void {
+    this.geometry.groups = this.chunks.seenBy(camera);
+    this.scene.overrideMaterial = material;
+    renderer.render(this.scene, camera);
   }
 
   /** Shows the light as it is now: after new light came, or lamps were dimmed. */

@@ -43,11 +43,9 @@ export class Edges {
     for (const { drawing, strip } of parts) {
       this.areas.value = this.areasOf(drawing);
       this.target.scissor.set(strip[0], 0, strip[1], height);
-      drawing.scene.overrideMaterial = this.numbers;
       this.renderer.setRenderTarget(this.target);
       this.renderer.clear();
-      this.renderer.render(drawing.scene, camera);
-      drawing.scene.overrideMaterial = null;
+      drawing.draw(this.renderer, camera, this.numbers);
     }
     this.renderer.setRenderTarget(null);
     this.renderer.setScissorTest(false);

@@ -1,6 +1,6 @@
 // The legend: the colours with their values, in the lower left corner. It is drawn, so that screenshots have it, too.
 
-import { significant } from "./numbers";
+import { short } from "./numbers";
 import { byId } from "./page";
 import { levels, PALETTES, position } from "./scale";
 import type { Viewer } from "./viewer";
@@ -69,12 +69,8 @@ export class Legend {
       // Where two would overlap only the lower one is written.
       if (above - y < 12) continue;
       context.fillStyle = "#c9c9c5";
-      context.fillText(label(value), LEFT + BAR + 10, Math.min(Math.max(y, TOP + 2), height - BOTTOM - 2));
+      context.fillText(short(value), LEFT + BAR + 10, Math.min(Math.max(y, TOP + 2), height - BOTTOM - 2));
       above = y;
     }
   }
-}
-
-function label(value: number): string {
-  return Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(0) : String(Number(significant(value, 3)));
 }

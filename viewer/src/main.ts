@@ -3,6 +3,7 @@
 import { Compare } from "./compare";
 import { about, embedded } from "./embedded";
 import { Groups } from "./groups";
+import { Labels } from "./labels";
 import { Legend } from "./legend";
 import { Light, type LightHeader } from "./light";
 import { Live } from "./live";
@@ -35,6 +36,7 @@ async function start(): Promise<void> {
   const canvas = byId<HTMLCanvasElement>("picture");
   const viewer = await Viewer.make(canvas, after, before, compared?.same_elements);
   const legend = new Legend(viewer);
+  const labels = new Labels(viewer);
   const reading = new ReadingCard(viewer, canvas);
   const compare = before && compared ? new Compare(viewer, compared.names) : undefined;
   const relight = () => {
@@ -43,7 +45,7 @@ async function start(): Promise<void> {
     reading.relit();
   };
   const groups = new Groups(viewer.after, relight);
-  const save = () => void screenshot(viewer, legend, after.surfaces.header.name);
+  const save = () => void screenshot(viewer, labels, legend, after.surfaces.header.name);
   new Panel(viewer, { screenshot: save, flip: () => compare?.flip(), clearReading: () => reading.clear() });
   report(viewer.after);
   viewer.draw();
@@ -53,7 +55,7 @@ async function start(): Promise<void> {
     fail("The graphics card has given up", "Load the page again. If it happens often, solve with fewer --elements.");
   });
   // For tests, and for the curious.
-  Object.assign(window, { isolux: { viewer, reading } });
+  Object.assign(window, { isolux: { viewer, reading, labels } });
   void live?.follow((light) => {
     viewer.after.light = light;
     groups.keep();

@@ -21,3 +21,8 @@ export function many(count: number): string {
   const found = names.find(([size]) => count >= size);
   return found ? `${significant(count / found[0], 3)} ${found[1]}` : count.toLocaleString("en");
 }
+
+/** A value on a scale, as short as can be. */
+export function short(value: number): string {
+  return Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(0) : String(Number(significant(value, 3)));
+}

@@ -43,11 +43,9 @@ export class Picking {
 
   private read(drawing: Drawing, camera: PerspectiveCamera, what: number): number[] {
     this.what.value = what;
-    drawing.scene.overrideMaterial = this.material;
     this.renderer.setRenderTarget(this.target);
     this.renderer.clear();
-    this.renderer.render(drawing.scene, camera);
-    drawing.scene.overrideMaterial = null;
+    drawing.draw(this.renderer, camera, this.material);
     const found = new Uint32Array(4);
     this.renderer.readRenderTargetPixels(this.target, 0, 0, 1, 1, found);
     this.renderer.setRenderTarget(null);

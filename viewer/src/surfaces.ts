@@ -1,6 +1,7 @@
 // The surfaces: which triangles are drawn, where they are, and what is on them.
 
 import type { Rgb } from "./colour";
+import { nearby } from "./nearby";
 import type { Part } from "./part";
 
 type Wrap = "repeat" | "mirror" | "clamp";
@@ -74,8 +75,10 @@ export class Surfaces {
     this.uv = floats("uv");
     this.emissionUv = floats("emission_uv");
     this.tint = floats("tint");
-    this.indices = part.numbers("index");
-    this.elementOf = part.numbers("triangle_element");
+    const [indices, elementOf] = [part.numbers("index"), part.numbers("triangle_element")];
+    const order = nearby(part.header.batches, indices, this.positions);
+    this.elementOf = order.map((t) => elementOf[t]!);
+    this.indices = new Uint32Array(indices.length).map((_, k) => indices[3 * order[Math.floor(k / 3)]! + (k % 3)]!);
     this.areas = part.floats("area");
     this.faceOf = part.numbers("face");
     this.reflectivities = part.floats("reflectivity");

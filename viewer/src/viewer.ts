@@ -11,8 +11,13 @@ import { defaults, type Settings } from "./settings";
 import type { Surfaces } from "./surfaces";
 import { MODES, paletteTexture, shared } from "./uniforms";
 
-/** Pixels of the screen for each of the page, at most: more cost time and cannot be seen. */
-const MOST_PIXELS = 2;
+/** Pixels of the picture for each of the page, along each side, at most: more cost time and cannot be seen. */
+export const MOST_PIXELS = 2;
+/** The same where the processor draws: while the camera moves, and once it stands. Multisampling would take three times as long. */
+const DRAFT_PIXELS = 0.5;
+const STILL_PIXELS = 2;
+/** Milliseconds after which a camera stands. */
+const STILL = 400;
 
 /** A solution to show. */
 export interface Shown {
@@ -30,26 +35,40 @@ export class Viewer {
   sameElements = false;
   /** Called after the picture was drawn. */
   readonly drawn: (() => void)[] = [];
+  /** Called when the camera stands again, or something else has changed while it stood. */
+  readonly stood: (() => void)[] = [];
   /** Draw calls and triangles of the last picture. */
   work = { calls: 0, triangles: 0, pictures: 0 };
   private readonly picking: Picking;
   private readonly edges: Edges;
   private readonly canvas: HTMLCanvasElement;
+  private readonly isSoftware: boolean;
   private isOld = true;
+  private isDraft = false;
+  private moved = -Infinity;
+  private seenStanding = 0;
   private last = 0;
   private scales = new Map<string, Scale>();
 
   private constructor(canvas: HTMLCanvasElement, surfaces: Surfaces) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.isSoftware = drawsByProcessor();
+    this.renderer = new WebGLRenderer({ canvas, antialias: !this.isSoftware, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.setClearColor(new Color(0), 0);
     this.picking = new Picking(this.renderer);
     this.edges = new Edges(this.renderer);
-    this.camera = new Camera(canvas, surfaces.header, () => this.update());
+    this.camera = new Camera(canvas, surfaces.header, () => this.move());
     new ResizeObserver(() => this.update()).observe(canvas);
     const loop = (now: number) => {
-      if (this.camera.step(Math.min((now - this.last) / 1000, 0.1)) || this.isOld) this.draw();
+      if (this.camera.step(Math.min((now - this.last) / 1000, 0.1))) this.move();
+      const isMoving = performance.now() - this.moved < STILL;
+      const isDraft = this.isSoftware && isMoving;
+      if (this.isOld || (this.isDraft && !isDraft)) this.draw(isDraft);
+      if (!isMoving && this.seenStanding !== this.work.pictures) {
+        this.seenStanding = this.work.pictures;
+        this.stood.forEach((told) => told());
+      }
       this.last = now;
       requestAnimationFrame(loop);
     };
@@ -71,6 +90,12 @@ export class Viewer {
   /** The picture has to be drawn again. */
   update(): void {
     this.isOld = true;
+  }
+
+  /** The camera has moved. */
+  private move(): void {
+    this.moved = performance.now();
+    this.update();
   }
 
   /** The light has changed. */
@@ -124,6 +149,12 @@ export class Viewer {
     return chosen ? { ...scale, ...chosen } : scale;
   }
 
+  /** Illuminances [lux] of the isolux lines that are drawn, rising. */
+  get lines(): number[] {
+    const { lines, mode } = this.settings;
+    return lines && (mode === "light" || mode === "illuminance") ? levels(this.scale) : [];
+  }
+
   private automaticScale(): Scale {
     const { logarithmic, relativeError } = this.settings;
     const key = `${this.palette} ${logarithmic} ${relativeError}`;
@@ -141,12 +172,13 @@ export class Viewer {
     return scale;
   }
 
-  /** Draws the picture now. */
-  draw(): void {
+  /** Draws the picture now; a draft has fewer pixels. */
+  draw(isDraft = false): void {
     this.isOld = false;
+    this.isDraft = isDraft;
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.after || width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, MOST_PIXELS));
+    this.renderer.setPixelRatio(this.isSoftware ? (isDraft ? DRAFT_PIXELS : STILL_PIXELS) : Math.min(window.devicePixelRatio, MOST_PIXELS));
     this.renderer.setSize(width, height, false);
     this.setUniforms();
     this.camera.fit(width, height);
@@ -159,7 +191,7 @@ export class Viewer {
     for (const { drawing, strip: [left, wide] } of parts) {
       this.renderer.setScissorTest(true);
       this.renderer.setScissor(left, 0, wide, height);
-      this.renderer.render(drawing.scene, this.camera.camera);
+      drawing.draw(this.renderer, this.camera.camera);
     }
     this.renderer.setScissorTest(false);
     if (this.settings.edges) {
@@ -172,7 +204,7 @@ export class Viewer {
   }
 
   /** Which solution is drawn where. */
-  private parts(width: number): { drawing: Drawing; strip: Strip }[] {
+  parts(width: number): { drawing: Drawing; strip: Strip }[] {
     const left = this.before && !this.isDifference ? Math.round(this.settings.divider * width) : 0;
     const parts: { drawing: Drawing; strip: Strip }[] = [];
     if (this.before && left > 0) parts.push({ drawing: this.before, strip: [0, left] });
@@ -181,9 +213,7 @@ export class Viewer {
   }
 
   private setUniforms(): void {
-    const { settings, scale } = this;
-    const hasLines = settings.lines && (settings.mode === "light" || settings.mode === "illuminance");
-    const lines = hasLines ? levels(scale) : [];
+    const { settings, scale, lines } = this;
     shared.mode.value = MODES[settings.mode];
     shared.byElement.value = settings.byElement;
     shared.textured.value = settings.textured;
@@ -196,4 +226,13 @@ export class Viewer {
     shared.levels.value.set(lines);
     shared.lineWidth.value = 1.6 * this.renderer.getPixelRatio();
   }
+}
+
+/** Whether this machine has no graphics card that the browser would use. */
+function drawsByProcessor(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const told = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl && told ? String(gl.getParameter(told.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|basic render/i.test(name);
 }

@@ -5,12 +5,19 @@ precision highp sampler2D;
 
 const int LIGHT = 0, ILLUMINANCE = 1, ERROR = 2, DIFFERENCE = 3;
 
-in vec3 vPosition;
 centroid in vec3 vIrradiance;
+#ifdef HAS_BEFORE
 centroid in vec3 vIrradianceBefore;
+#endif
+#ifdef HAS_UV
 centroid in vec2 vUv;
+#endif
+#ifdef HAS_EMISSION_UV
 centroid in vec2 vEmissionUv;
+#endif
+#ifdef HAS_TINT
 centroid in vec3 vTint;
+#endif
 flat in uint vElement;
 
 uniform int mode;
@@ -55,8 +62,11 @@ vec4 ofElement(sampler2D values) {
 
 // Luminance [cd/m²] of the surface under so much irradiance.
 vec3 seen(vec3 irradiance) {
-  vec3 rho = reflectivity * vTint;
+  vec3 rho = reflectivity;
   vec3 emitted = emission;
+#ifdef HAS_TINT
+  rho *= vTint;
+#endif
 #ifdef HAS_UV
   rho *= textured ? texture(reflectivityMap, vUv).rgb : reflectivityMean;
 #endif
@@ -92,14 +102,14 @@ float onLine(float lux) {
 
 void main() {
   vec3 smoothLight = max(vIrradiance, 0.0);
-  vec4 element = ofElement(elements);
-  vec3 light = byElement ? element.rgb : smoothLight;
+  vec3 light = byElement ? ofElement(elements).rgb : smoothLight;
   vec3 shown;
   if (mode == LIGHT) {
     shown = onScreen(filmic(seen(light) * exposure));
   } else if (mode == ILLUMINANCE) {
     shown = falseColour(luminance(light));
   } else if (mode == ERROR) {
+    vec4 element = ofElement(elements);
     float lux = luminance(element.rgb);
     float error = relativeError ? 100.0 * element.a / max(lux, 1e-20) : element.a;
     // An error that is not known is grey, as in the dark.
@@ -109,7 +119,7 @@ void main() {
     vec3 before = byElement ? ofElement(elementsBefore).rgb : vIrradianceBefore;
 #else
     vec3 before = ofElement(elementsBefore).rgb;
-    light = element.rgb;
+    light = ofElement(elements).rgb;
 #endif
     shown = falseColour(luminance(light) - luminance(before));
   }

@@ -24,10 +24,18 @@ in vec3 tint;
 // Centroids: at the edge of a triangle its middle of a pixel may lie outside, where light would be extrapolated.
 out vec3 vPosition;
 centroid out vec3 vIrradiance;
+#ifdef HAS_BEFORE
 centroid out vec3 vIrradianceBefore;
+#endif
+#ifdef HAS_UV
 centroid out vec2 vUv;
+#endif
+#ifdef HAS_EMISSION_UV
 centroid out vec2 vEmissionUv;
+#endif
+#ifdef HAS_TINT
 centroid out vec3 vTint;
+#endif
 flat out uint vElement;
 
 void main() {
@@ -45,8 +53,6 @@ void main() {
 #endif
 #ifdef HAS_TINT
   vTint = tint;
-#else
-  vTint = vec3(1.0);
 #endif
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }

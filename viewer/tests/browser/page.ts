@@ -31,7 +31,7 @@ export async function open(page: Page, name: string): Promise<void> {
 export async function picture(page: Page): Promise<Buffer> {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   // Without what lies over it.
-  const style = "#reading, #legend, #mark, .side-name, #divider, #live { visibility: hidden; }";
+  const style = "#reading, #legend, #labels, #mark, .side-name, #divider, #live { visibility: hidden; }";
   return page.locator("#picture").screenshot({ style });
 }
 

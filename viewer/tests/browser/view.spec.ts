@@ -179,3 +179,62 @@ test("a browser without WebGL 2 gets advice", async ({ browser }) => {
   await expect(page.locator("#message")).toContainText("WebGL 2");
   await page.close();
 });
+
+test("isolux lines bear their values", async ({ page }) => {
+  await open(page, "room.html");
+  /** Labels: their values, what is interpolated there, and where they are, once the camera stands. */
+  const labels = async () => {
+    await page.waitForTimeout(1500);
+    return page.evaluate(() => {
+      const { viewer, labels } = (window as any).isolux;
+      const { clientWidth: width, clientHeight: height } = viewer.renderer.domElement;
+      return labels.found.map(({ lux, position }: any) => {
+        const { x, y } = position.clone().project(viewer.camera.camera);
+        const at = [(0.5 + 0.5 * x) * width, (0.5 - 0.5 * y) * height];
+        const [r, g, b] = viewer.pick(...at).irradiance;
+        return { lux, there: 0.2126 * r + 0.7152 * g + 0.0722 * b, at };
+      }) as { lux: number; there: number; at: [number, number] }[];
+    });
+  };
+  const written = () => page.evaluate(() => (window as any).isolux.labels.canvas.toDataURL() as string);
+  expect(await labels()).toEqual([]);
+  const blank = await written();
+  await page.keyboard.press("i");
+  const first = await labels();
+  expect(first.length).toBeGreaterThan(5);
+  const levels = await page.evaluate(() => (window as any).isolux.viewer.lines as number[]);
+  const step = levels[1]! - levels[0]!;
+  for (const [k, { lux, there, at }] of first.entries()) {
+    expect(levels).toContain(lux);
+    expect(Math.abs(there - lux)).toBeLessThan(0.3 * step);
+    for (const other of first.slice(0, k)) expect(Math.hypot(at[0] - other.at[0], at[1] - other.at[1])).toBeGreaterThan(50);
+  }
+  expect(await written()).not.toBe(blank);
+
+  // They go with the camera, and are sought anew where it stands.
+  await page.mouse.move(400, 300);
+  await page.mouse.down();
+  await page.mouse.move(480, 320, { steps: 4 });
+  await page.mouse.up();
+  const second = await labels();
+  expect(second.length).toBeGreaterThan(5);
+  expect(second.map(({ at }) => at)).not.toEqual(first.map(({ at }) => at));
+  for (const { lux, there } of second) expect(Math.abs(there - lux)).toBeLessThan(0.3 * step);
+
+  await page.keyboard.press("i");
+  expect(await labels()).toEqual([]);
+  expect(await written()).toBe(blank);
+});
+
+test("while the camera moves by software a draft is drawn, and the whole picture once it stands", async ({ page }) => {
+  await open(page, "room.html");
+  const ratio = () => page.evaluate(() => (window as any).isolux.viewer.renderer.getPixelRatio() as number);
+  expect(await ratio()).toBe(2);
+  await page.mouse.move(400, 300);
+  await page.mouse.down();
+  await page.mouse.move(480, 320, { steps: 4 });
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  expect(await ratio()).toBe(0.5);
+  await page.mouse.up();
+  await expect.poll(ratio).toBe(2);
+});
