@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from . import _native
-from .light import named
+from .light import by_name
 from .solution import Solution
 
 
@@ -33,7 +33,7 @@ class Comparison:
     power: tuple[float, float]
     """Flux that leaves all surfaces [lm], in each of them."""
     z: dict[str, float]
-    """Difference of the mean irradiances over its standard deviation, of each object; "scene" is the whole."""
+    """Difference of the mean irradiances over its standard deviation, of each of `Solution.objects`; "scene" is the whole."""
     beyond_3: float
     """Share of the elements that differ by more than three standard deviations; 0.0027 if the differences are normal."""
 
@@ -50,7 +50,7 @@ def compare(a: Solution, b: Solution) -> Comparison:
         NotComparable: they are of different scenes, or cut into different elements.
     """
     known = json.loads(a._native.compare(b._native))
-    means = {named(one): one["z"] for one in known["objects"]}
+    means = {name: one["z"] for name, one in by_name(known["objects"]).items()}
     if known["mean"] is not None:
         means = {"scene": known["mean"]["z"]} | means
     scores = known["z"] or {}

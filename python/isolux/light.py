@@ -65,6 +65,13 @@ class ObjectLight:
         return f"{self.name}: {self.mean} lx on {self.area:.4g} m²"
 
 
-def named(known: dict[str, Any]) -> str:
-    """The name of an object of a summary, with its side if it has two."""
-    return f"{known['name']}, {known['side']}" if known["side"] else str(known["name"])
+def by_name(objects: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """The objects of a summary by their names, with their sides if they have two; of equal names the later ones get a number."""
+    found: dict[str, dict[str, Any]] = {}
+    for known in objects:
+        own = f"{known['name']}, {known['side']}" if known["side"] else str(known["name"])
+        name, k = own, 2
+        while name in found:
+            name, k = f"{own} ({k})", k + 1
+        found[name] = known
+    return found

@@ -102,6 +102,11 @@ class Problem:
         """The number of its triangle, shape (n,)."""
         return self._native.triangles
 
+    @property
+    def backs(self) -> npt.NDArray[np.bool_]:
+        """Whether it lies on the back of its triangle, shape (n,)."""
+        return self._native.backs
+
     def elements_of(self, name: str) -> Integers:
         """The numbers of all elements of the objects called `name`.
 

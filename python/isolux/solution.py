@@ -15,7 +15,7 @@ from . import _native, plot, tables
 from .colors import Color, Floats, color, luminance
 from .errors import ParameterError, UnknownName
 from .estimate import Estimate
-from .light import Balance, ObjectLight, Provenance, named
+from .light import Balance, ObjectLight, Provenance, by_name
 from .problem import Problem
 
 if TYPE_CHECKING:
@@ -83,11 +83,7 @@ class Solution:
         An object with elements on both sides is there twice, as "Wall, front" and "Wall, back".
         """
         found: dict[str, ObjectLight] = {}
-        for known in self._summary["objects"]:
-            own = named(known)
-            name, k = own, 2
-            while name in found:
-                name, k = f"{own} ({k})", k + 1
+        for name, known in by_name(self._summary["objects"]).items():
             mean = _estimate(known["mean"], known["mean_error"])
             numbers = {key: known[key] for key in ("side", "elements", "area", "min", "max", "emitted", "incident", "reflected")}
             found[name] = ObjectLight(name=name, mean=mean, **numbers)
@@ -159,7 +155,7 @@ class Solution:
         """A table (pandas).
 
         Args:
-            by: "element" has a row for each element, with the columns of the `.csv` file but for the side; "object" one for each object:
+            by: "element" has a row for each element, with the columns of the `.csv` file; "object" one for each object:
                 area [m²], mean irradiance with standard error and 95 % margin, min, max [lux], and flux [lm].
 
         Raises:

@@ -21,6 +21,7 @@ def of_elements(solution: Solution) -> pd.DataFrame:
     known: dict[str, Any] = {
         "object": [names[k] for k in problem.objects],
         "triangle": problem.triangles,
+        "side": ["back" if is_back else "front" for is_back in problem.backs],
         **_columns(problem.centres, ["x", "y", "z"]),
         **_columns(problem.normals, ["nx", "ny", "nz"]),
         "area": problem.areas,
@@ -33,7 +34,8 @@ def of_elements(solution: Solution) -> pd.DataFrame:
         **_channels("radiosity", solution.radiosity),
     }
     table = pandas.DataFrame(known)
-    table["object"] = table["object"].astype("category")
+    for name in ("object", "side"):
+        table[name] = table[name].astype("category")
     table.index.name = "element"
     return table  # type: ignore[no-any-return]
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import isolux
+from isolux.light import by_name
 
 
 def test_means_are_those_of_the_arrays(cornell: isolux.Solution) -> None:
@@ -43,6 +44,7 @@ def test_every_format_is_written_and_a_solution_comes_back(cornell: isolux.Solut
     table = pandas.read_csv(tmp_path / "a.csv")
     ours = cornell.to_dataframe()
     lux = next(name for name in table.columns if name.startswith("irradiance_luminance"))
+    assert list(table["side"]) == list(ours["side"])
     assert table[lux].to_numpy() == pytest.approx(ours["irradiance_luminance"].to_numpy(), rel=1e-4)
     with pytest.raises(isolux.UnknownFormat, match=r"\.npz"):
         cornell.save(tmp_path / "a.docx")
@@ -112,9 +114,23 @@ def test_seeds_are_merged_and_compared(cornell: isolux.Solution) -> None:
     difference = isolux.compare(one, two)
     assert difference.rms == pytest.approx(difference.expected_rms, rel=0.5) and abs(difference.z["scene"]) < 12
     assert "standard deviations" in str(difference)
+    assert list(difference.z) == ["scene", *one.objects]
     with pytest.raises(isolux.NotMergeable):
         isolux.merge([one, one])
     with pytest.raises(isolux.NotMergeable):
         isolux.merge([])
     with pytest.raises(isolux.NotComparable):
         isolux.compare(one, cornell)
+
+
+def test_objects_of_equal_names_are_all_kept() -> None:
+    objects = [{"name": "chair", "side": side, "number": k} for k, side in enumerate([None, None, "front", "back", "front"])]
+    numbers = {name: known["number"] for name, known in by_name(objects).items()}
+    assert numbers == {"chair": 0, "chair (2)": 1, "chair, front": 2, "chair, back": 3, "chair, front (2)": 4}
+
+
+def test_elements_know_their_side() -> None:
+    scene = isolux.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], two_sided=True)
+    problem = isolux.Problem(scene, elements=8)
+    assert 0 < problem.backs.sum() == len(problem) / 2
+    assert (problem.normals[problem.backs] == -problem.normals[~problem.backs][0]).all()

@@ -29,6 +29,7 @@ struct Known {
     emission: Vec<[f32; 3]>,
     objects: Vec<u32>,
     triangles: Vec<u32>,
+    backs: Vec<bool>,
 }
 
 impl Known {
@@ -44,6 +45,7 @@ impl Known {
             emission: mesh.elements().map(|e| mesh.emission(e).to_array()).collect(),
             objects: mesh.elements().map(|e| problem.object(e)).collect(),
             triangles: mesh.elements().map(|e| mesh.triangle(e)).collect(),
+            backs: mesh.elements().map(|e| mesh.place(e).back).collect(),
         }
     }
 }
@@ -144,6 +146,11 @@ impl Problem {
     #[getter]
     fn triangles<'py>(slf: &Bound<'py, Self>) -> Bound<'py, PyArray1<u32>> {
         view(slf, |problem| &problem.known().triangles)
+    }
+
+    #[getter]
+    fn backs<'py>(slf: &Bound<'py, Self>) -> Bound<'py, PyArray1<bool>> {
+        view(slf, |problem| &problem.known().backs)
     }
 
     /// The triangles that show the elements: their corners (p, 3, 3), and the element of each (p,).
