@@ -73,7 +73,7 @@ impl Sequence for Same {
 pub struct Light<'a> {
     problem: &'a Problem,
     field: VertexField,
-    /// Number of elements on a side of each triangle.
+    /// Number of elements that a side of each triangle has, or a part in.
     elements: Vec<u32>,
 }
 
@@ -81,8 +81,8 @@ impl Light<'_> {
     /// Of the `irradiance` [lux] of its elements.
     pub fn new<'a>(problem: &'a Problem, irradiance: &[Rgb]) -> Light<'a> {
         let mut elements = vec![0; problem.scene.triangles.len()];
-        for e in problem.mesh.elements() {
-            elements[problem.mesh.triangle(e) as usize] += u32::from(!problem.mesh.place(e).back);
+        for e in problem.mesh.elements().filter(|&e| !problem.mesh.place(e).back) {
+            problem.mesh.pieces(e).for_each(|piece| elements[piece.triangle as usize] += 1);
         }
         Light { problem, field: VertexField::draft(problem, irradiance, None), elements }
     }
@@ -92,7 +92,7 @@ impl Light<'_> {
         [false, true].map(|back| self.field.irradiance_at(self.problem, triangle, uv, back).luminance())
     }
 
-    /// Number of elements on a side of `triangle` for which light is known.
+    /// Number of elements that a side of `triangle` has, or a part in; at least one.
     pub fn elements_on(&self, triangle: u32) -> u32 {
         self.elements[triangle as usize]
     }

@@ -38,8 +38,9 @@ use crate::{Error, Problem, Solution};
 const PILOT: f64 = 0.25;
 /// Share of the whole work that the pilot may take.
 pub const SHARE: f64 = 0.08;
-/// Shares of the elements for which direct light is computed, in turn, and of the rays of the solve for each time in an element.
-const STEPS: [f64; 2] = [0.25, 1.0];
+/// Share of the elements that are more than triangles, for which light is known first; then it is for as many as are asked for.
+const FIRST: f64 = 0.25;
+/// Share of the rays of the solve for the direct light of one mesh.
 const DIRECT: f64 = 0.12;
 /// Fewest and most rays of an element for direct light.
 const FEWEST_RAYS: f64 = 4.0;
@@ -94,15 +95,15 @@ pub fn follow_light<E: From<Error>>(
     };
     let mut rays = solution.work.rays;
     let indirect = Indirect::new(pilot, &solution);
-    let mut problem = Problem::new(scene, Resolution::Extra(size(STEPS[0])))?;
-    for next in STEPS.into_iter().skip(1).chain([1.0]) {
+    let mut problem = Problem::new(scene, Resolution::Extra(size(FIRST)))?;
+    for _ in 0..2 {
         let mut irradiance: Vec<Rgb> = problem.mesh.elements().map(|e| indirect.on(&problem, e)).collect();
         if effort.light == LightPart::All {
             let (direct, traced) = light::direct(&problem, effort.of_direct_light(elements), effort.seed);
             irradiance.iter_mut().zip(direct).for_each(|(light, direct)| *light += direct);
             rays += traced;
         }
-        let cut = adapt(&problem, &irradiance, size(next))?;
+        let cut = adapt(&problem, &irradiance, elements)?;
         problem = problem.cut_anew(&cut)?;
     }
     Ok(Followed { problem, rays })

@@ -139,6 +139,18 @@ fn triangles_are_put_together_where_the_mesh_is_finer_than_the_light() {
     }
 }
 
+/// On a mesh of clusters, too, all triangles have light: it is put together again as before.
+#[test]
+fn what_was_put_together_can_be_again() {
+    let light = |p: Vec3| if p.x > 0.0 { 100.0 } else { 50.0 };
+    let (problem, irradiance) = lit("office", 1, light);
+    let elements = Resolution::least(&problem.scene) / 2;
+    let once = adapted(&problem, &irradiance, elements);
+    let irradiance: Vec<Rgb> = once.mesh.elements().map(|e| Rgb::grey(light(middle(&once, e)))).collect();
+    let twice = adapted(&once, &irradiance, elements);
+    assert!(twice.mesh.len() as u64 <= elements, "{} of {elements}, {} before", twice.mesh.len(), once.mesh.len());
+}
+
 fn scene_middle(problem: &Problem, t: u32) -> Vec3 {
     problem.scene.corners(t).into_iter().sum::<Vec3>() / 3.0
 }
