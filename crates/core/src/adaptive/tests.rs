@@ -208,7 +208,7 @@ fn indirect_light_alone_takes_no_direct_light() {
         assert!(settings.light == LightPart::Indirect);
         let irradiance = problem.mesh.elements().map(|e| Rgb::grey(pool(middle(problem, e)))).collect();
         let solution = solution(irradiance);
-        let work = Work { rays: 7, replicates: 2, ..solution.work };
+        let work = Work { rays: 7, replicates: 2 };
         Ok::<_, Error>(Some(Solution { work, ..solution }))
     };
     let indirect = Effort { light: LightPart::Indirect, ..EFFORT };
