@@ -14,7 +14,7 @@ use isolux_core::{Problem, Solution};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// Seed of the pilots: the mesh does not depend on that of the solve, so that solves of several seeds can be merged.
+/// Seed of what finds an adaptive mesh: the mesh does not depend on that of the solve, so that solves of several seeds can be merged.
 const SEED: u64 = 0x6d65_7368;
 
 /// How a scene is cut into elements.
@@ -27,14 +27,14 @@ enum Mesh {
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct MeshArguments {
     /// Where elements are small: uniform, the same everywhere, or adaptive, where the light changes (at the edges of shadows, beside lamps). The error
-    /// of an adaptive mesh is half that of a uniform one, but small elements get fewer rays and have more noise. A quick solution finds it, for a fifth of the work; the same scene, --elements and --light
-    /// make the same mesh, whatever the seed and the method (but for few --rays; with little --time it is uniform). To compare solutions
-    /// element by element, leave it uniform
+    /// of an adaptive mesh is half that of a uniform one, but small elements get fewer rays and have more noise. A quick solution finds it, for a fifth
+    /// of the work; the same scene, --elements and --light make the same mesh, whatever the seed and the method (but for few --rays; with little
+    /// --time it is uniform). To compare solutions element by element, leave it uniform
     #[arg(long, value_enum, default_value = "uniform", hide_possible_values = true)]
     mesh: Mesh,
 }
 
-/// What pilots may cost.
+/// What a mesh may cost, and which light it follows.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Rays of the whole solve, if they are limited.
@@ -48,7 +48,7 @@ pub struct Limits {
 pub struct Meshed {
     pub problem: Problem,
     pub budget: Budget,
-    /// Time that pilots took.
+    /// Time that it took to find an adaptive one.
     pub took: Duration,
 }
 

@@ -18,8 +18,9 @@ pub const WHOLE: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::Y];
 pub const LEAF: u32 = 0;
 /// A patch with fewer samples gets new ones of its own.
 const FEWEST: usize = 12;
-/// Along the edge of a patch that gets new samples, and of one of the pilots' elements on a triangle.
+/// Samples along the edge of a patch that gets new ones, and of an element of a whole triangle; most of them along the edge of that.
 const ALONG_EDGE: u16 = 4;
+const MOST_ALONG_EDGE: u16 = 512;
 /// Halves are at least so good, if one can be: 1 is equilateral.
 const LEAST_QUALITY: f32 = 0.2;
 
@@ -121,7 +122,8 @@ fn moments(samples: &[Sample]) -> ([f32; 2], f32) {
 
 /// Divisions for the samples of a whole triangle.
 fn along(light: &Light, triangle: u32) -> u16 {
-    (f64::from(ALONG_EDGE) * f64::from(light.elements_on(triangle)).sqrt()).ceil() as u16
+    let along = f64::from(ALONG_EDGE) * f64::from(light.elements_on(triangle)).sqrt();
+    (along.ceil() as u16).min(MOST_ALONG_EDGE)
 }
 
 /// The corner from which to bisect `patch`.
