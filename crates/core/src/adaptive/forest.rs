@@ -3,7 +3,7 @@
 use super::grow::{self, LEAF, Node, Rule, WHOLE};
 use super::light::Light;
 use crate::Problem;
-use crate::mesh::{Cut, Division, MOST_BISECTIONS, Slices, halved, halves, surface_area};
+use crate::mesh::{Cut, Division, MOST_BISECTIONS, Slices, halved, halves, sides, surface_area};
 use glam::Vec2;
 use rayon::prelude::*;
 
@@ -45,7 +45,7 @@ impl Forest {
     pub fn errors(&self, problem: &Problem) -> Vec<(f32, u64)> {
         let of_tree = |(t, tree): (u32, &Vec<Node>)| {
             let errors = tree.iter().filter(|node| node.first != LEAF).map(|node| node.error);
-            errors.map(move |error| (error, sides(problem, t))).collect::<Vec<(f32, u64)>>()
+            errors.map(move |error| (error, sides(&problem.scene, t))).collect::<Vec<(f32, u64)>>()
         };
         (0..).zip(&self.trees).flat_map(of_tree).collect()
     }
@@ -145,8 +145,4 @@ fn push_divisions(tree: &[Node], number: u32, divisions: &mut Vec<Division>) {
     }
     divisions.push(Division::Bisected(from));
     [first, first + 1].into_iter().for_each(|half| push_divisions(tree, half, divisions));
-}
-
-fn sides(problem: &Problem, triangle: u32) -> u64 {
-    1 + u64::from(problem.mesh.is_two_sided(triangle))
 }

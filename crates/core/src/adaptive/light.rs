@@ -9,7 +9,7 @@
 use crate::math::Rgb;
 use crate::sampling::{Sample, Sequence, SequenceName};
 use crate::transport::LightSampler;
-use crate::transport::direct_light::{DirectEstimator, Rays};
+use crate::transport::direct_light::{DirectEstimator, Rays, STREAMS};
 use crate::view::{VertexField, smooth};
 use crate::{Problem, Solution};
 use glam::Vec2;
@@ -55,9 +55,6 @@ pub fn direct(problem: &Problem, rays: Rays, seed: u64) -> (Vec<Rgb>, u64) {
 
 /// The same numbers for every element.
 struct Same(Box<dyn Sequence>);
-
-/// Streams of an element, see [`DirectEstimator::new`].
-const STREAMS: u64 = 3;
 
 impl Sequence for Same {
     fn fill(&self, stream: u64, first: u64, points: &mut [Sample]) {

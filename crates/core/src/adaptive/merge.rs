@@ -7,15 +7,13 @@
 use super::grow;
 use super::light::Light;
 use crate::math::DisjointSets;
-use crate::mesh::{surface_area, triangle_neighbours};
+use crate::mesh::{BEND, sides, surface_area, triangle_neighbours};
 use crate::scene::{Scene, Shape};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Cosine of the greatest angle between the normals of what is put together, and length of their mean: 20 degrees.
-const BEND: f64 = 0.939_692_620_785_908_4;
 /// Greatest extent of a region, in edges of a square of the largest area.
 const EXTENT: f32 = 2.0;
 
@@ -83,8 +81,7 @@ impl Merges {
             }
             sets.join(one, other);
             regions[one.min(other) as usize] = both;
-            let sides = 1 + u64::from(scene.is_two_sided(a));
-            steps.push(Merge { error: f32::from_bits(bound), pair: (a, b), sides });
+            steps.push(Merge { error: f32::from_bits(bound), pair: (a, b), sides: sides(scene, a) });
         }
         Merges { triangles, steps }
     }

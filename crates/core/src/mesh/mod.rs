@@ -27,8 +27,9 @@ mod triangle;
 
 pub use bisection::{Division, MOST_BISECTIONS, halved, halves};
 pub use clusters::{Cluster, Piece};
+pub(crate) use cut::sides;
 pub use cut::{Cut, MOST_ELEMENTS};
-pub(crate) use grow::triangle_neighbours;
+pub(crate) use grow::{BEND, triangle_neighbours};
 pub use locate::{Point, TOGETHER};
 pub use lookup::{LANES, Lookup};
 pub use resolution::Resolution;

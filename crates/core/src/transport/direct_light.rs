@@ -24,7 +24,7 @@ use glam::Vec2;
 use std::f32::consts::FRAC_1_PI;
 
 /// Streams that an element owns.
-const STREAMS: u64 = 3;
+pub const STREAMS: u64 = 3;
 /// Fewest points for a light without extent, however many there are.
 const FEWEST_POINTS: u32 = 4;
 

@@ -12,7 +12,7 @@ use super::vertices::{Vertices, group_by};
 use crate::Problem;
 use crate::math::weld;
 use glam::{IVec3, Vec2, Vec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A vertex that takes the value `(1 - t) value[from] + t value[to]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,11 +49,12 @@ pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
 fn hanging(found: impl Iterator<Item = TVertex>) -> BTreeMap<u32, TVertex> {
     let mut hanging: BTreeMap<u32, TVertex> = BTreeMap::new();
     for t in found {
-        let mut below = vec![t.from, t.to];
+        let (mut below, mut seen) = (vec![t.from, t.to], BTreeSet::new());
         let mut is_free = !hanging.contains_key(&t.vertex);
         while let Some(vertex) = below.pop().filter(|_| is_free) {
             is_free = vertex != t.vertex;
-            below.extend(hanging.get(&vertex).into_iter().flat_map(|on| [on.from, on.to]));
+            let on = hanging.get(&vertex).filter(|_| seen.insert(vertex));
+            below.extend(on.into_iter().flat_map(|on| [on.from, on.to]));
         }
         if is_free {
             hanging.insert(t.vertex, t);
