@@ -16,19 +16,18 @@ const BEYOND: f32 = 0.02;
 
 /// Bisects leaves of `forest` until neighbours differ by one level at most. Triangles that are put together, those with a leader, stay as they
 /// are.
-pub fn balance(problem: &Problem, forest: &mut Forest, leaders: &[u32]) {
+pub fn balance(problem: &Problem, borders: &Borders, forest: &mut Forest, leaders: &[u32]) {
     let mut is_together = vec![false; problem.scene.triangles.len()];
     for (t, &leader) in (0..).zip(leaders).filter(|&(t, &leader)| t != leader) {
         is_together[t as usize] = true;
         is_together[leader as usize] = true;
     }
-    let borders = Borders::of(&problem.scene, problem.geometry.as_ref());
     let mut leaves = forest.leaves();
     while let Some(leaf) = leaves.pop() {
         if !forest.is_leaf(&leaf) || is_together[leaf.triangle as usize] {
             continue;
         }
-        for Probe { triangle, uv, length } in probes(problem, &borders, &leaf) {
+        for Probe { triangle, uv, length } in probes(problem, borders, &leaf) {
             loop {
                 let (neighbour, within) = forest.leaf_at(triangle, uv);
                 let (opposite, met) = edge_at(problem, &neighbour, within);

@@ -1,7 +1,8 @@
 //! The trees of all triangles, and the mesh that their leaves are.
 
-use super::grow::{self, LEAF, Node, Rule, WHOLE};
+use super::grow::{self, LEAF, Node, Rule};
 use super::light::Light;
+use super::samples::WHOLE;
 use crate::Problem;
 use crate::mesh::{Cut, Division, MOST_BISECTIONS, Slices, halved, halves, sides, surface_area};
 use glam::Vec2;
@@ -29,11 +30,19 @@ impl Leaf {
 }
 
 impl Forest {
-    /// All trees grown as far as `rule` allows.
-    pub fn grown(problem: &Problem, light: &Light, rule: &Rule) -> Forest {
+    /// Every triangle as one patch, of which `light` is known.
+    pub fn new(light: &Light) -> Forest {
+        let root = |t: u32| vec![Node { error: light.on(t).error, first: LEAF, from: 0 }];
+        Forest { trees: (0..light.triangles()).map(root).collect() }
+    }
+
+    /// Grows all trees on as far as `rule` allows.
+    pub fn grow(&mut self, problem: &Problem, light: &Light, rule: &Rule) {
         let scene = &problem.scene;
-        let tree = |t: u32| grow::tree(light, t, scene.corners(t), surface_area(scene, t), rule);
-        Forest { trees: (0..scene.triangles.len() as u32).into_par_iter().map(tree).collect() }
+        self.trees.par_iter_mut().enumerate().for_each(|(t, tree)| {
+            let t = t as u32;
+            grow::grow(tree, light, t, scene.corners(t), surface_area(scene, t), rule);
+        });
     }
 
     /// Number of all patches.
@@ -50,10 +59,11 @@ impl Forest {
         (0..).zip(&self.trees).flat_map(of_tree).collect()
     }
 
-    /// Error [lux² m²] of all leaves.
-    pub fn error_of_leaves(&self) -> f32 {
-        let leaves = self.trees.iter().flatten().filter(|node| node.first == LEAF && node.error.is_finite());
-        leaves.map(|node| node.error).sum()
+    /// The error [lux² m²] that an element would have if there were so many `elements`: the error of a patch falls to a quarter if it is halved
+    /// and light is linear.
+    pub fn error_with(&self, elements: u64) -> f32 {
+        let leaves = self.trees.iter().flatten().filter(|node| node.first == LEAF);
+        (leaves.map(|node| f64::from(node.error).sqrt()).sum::<f64>() / elements as f64).powi(2) as f32
     }
 
     /// With those bisections only whose error is above `error`.

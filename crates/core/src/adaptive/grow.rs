@@ -9,18 +9,12 @@
 //! analysis based on anisotropic triangulations"); but not from one that would make a splinter: noise may look like a reason to.
 
 use super::light::Light;
-use crate::mesh::{MOST_BISECTIONS, cells, halved, halves};
+use super::samples::{Samples, WHOLE};
+use crate::mesh::{MOST_BISECTIONS, halves};
 use glam::{Vec2, Vec3};
 
-/// Barycentric coordinates of the corners of a triangle on itself.
-pub const WHOLE: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::Y];
 /// Mark of a patch that is not bisected.
 pub const LEAF: u32 = 0;
-/// A patch with fewer samples gets new ones of its own.
-const FEWEST: usize = 12;
-/// Samples along the edge of a patch that gets new ones, and of an element of a whole triangle; most of them along the edge of that.
-const ALONG_EDGE: u16 = 4;
-const MOST_ALONG_EDGE: u16 = 512;
 /// Halves are at least so good, if one can be: 1 is equilateral.
 const LEAST_QUALITY: f32 = 0.2;
 
@@ -58,99 +52,86 @@ struct Patch {
     depth: usize,
 }
 
-/// Barycentric coordinates on a patch, and the light there [lux] on the front and on the back.
-type Sample = (Vec2, [f32; 2]);
+impl Patch {
+    /// Its halves, numbered from `first`, if it is bisected from its corner `from`.
+    fn halves(&self, first: u32, from: u8) -> [Patch; 2] {
+        let (corners, on_triangle) = (halves(self.corners, from), halves(self.on_triangle, from));
+        [0, 1].map(|half| Patch {
+            number: first as usize + half,
+            corners: corners[half],
+            on_triangle: on_triangle[half],
+            area: 0.5 * self.area,
+            depth: self.depth + 1,
+        })
+    }
+}
 
-/// The tree of `triangle` of `area` [m²] with these `corners` [m], grown as far as `rule` allows.
-pub fn tree(light: &Light, triangle: u32, corners: [Vec3; 3], area: f64, rule: &Rule) -> Vec<Node> {
-    let mut nodes = vec![Node { error: f32::INFINITY, first: LEAF, from: 0 }];
+impl Rule {
+    /// Whether `patch` is to be bisected, as it is wrong by `error` [lux² m²] as one element.
+    fn asks_for(&self, patch: &Patch, error: f32) -> bool {
+        let is_wrong = patch.area > self.largest || error > self.error;
+        is_wrong && 0.5 * patch.area > self.smallest && patch.depth < MOST_BISECTIONS
+    }
+}
+
+/// Grows the tree of `triangle` of `area` [m²] with these `corners` [m] on, as far as `rule` allows.
+pub fn grow(nodes: &mut Vec<Node>, light: &Light, triangle: u32, corners: [Vec3; 3], area: f64, rule: &Rule) {
     let root = Patch { number: 0, corners, on_triangle: WHOLE, area, depth: 0 };
-    let samples = samples(light, triangle, WHOLE, along(light, triangle));
-    grow(&mut nodes, light, triangle, root, samples, rule);
-    nodes
+    grow_below(nodes, light, triangle, root, rule);
 }
 
-fn grow(nodes: &mut Vec<Node>, light: &Light, triangle: u32, patch: Patch, mut samples: Vec<Sample>, rule: &Rule) {
-    if samples.len() < FEWEST {
-        samples = self::samples(light, triangle, patch.on_triangle, ALONG_EDGE);
+/// Grows the leaves below `patch` on.
+fn grow_below(nodes: &mut Vec<Node>, light: &Light, triangle: u32, patch: Patch, rule: &Rule) {
+    let Node { first, from, error } = nodes[patch.number];
+    if first != LEAF {
+        let halves = patch.halves(first, from);
+        return halves.into_iter().for_each(|half| grow_below(nodes, light, triangle, half, rule));
     }
+    if rule.asks_for(&patch, error) {
+        let is_whole = patch.depth == 0;
+        let samples = if is_whole {
+            Samples::of_triangle(light, triangle)
+        } else {
+            Samples::of(light, triangle, patch.on_triangle)
+        };
+        bisect(nodes, light, triangle, patch, samples, rule);
+    }
+}
+
+/// Bisects `patch` with the light there, and its halves as `rule` asks for it.
+fn bisect(nodes: &mut Vec<Node>, light: &Light, triangle: u32, patch: Patch, samples: Samples, rule: &Rule) {
+    let (from, first) = (best_corner(&patch, &samples), nodes.len() as u32);
     let node = &mut nodes[patch.number];
-    let light_error = patch.area as f32 * moments(&samples).1;
-    let is_large = patch.area > rule.largest;
-    node.error = if is_large { f32::INFINITY } else { node.error.min(light_error) };
-    node.from = best_corner(&patch, &samples);
-    let Node { error, from, .. } = *node;
-    if !is_large && error <= rule.error || 0.5 * patch.area <= rule.smallest || patch.depth == MOST_BISECTIONS {
-        return;
+    (node.from, node.first) = (from, first);
+    if patch.area > rule.largest {
+        node.error = f32::INFINITY;
     }
-    let first = nodes.len();
-    nodes[patch.number].first = first as u32;
-    nodes.extend([Node { error, first: LEAF, from: 0 }; 2]);
-    let mut of_half = [Vec::new(), Vec::new()];
-    samples.into_iter().for_each(|(uv, light)| {
-        let (half, within) = halved(uv, from);
-        of_half[half as usize].push((within, light));
-    });
-    let corners = halves(patch.corners, from).into_iter().zip(halves(patch.on_triangle, from));
-    for (half, ((corners, on_triangle), samples)) in corners.zip(of_half).enumerate() {
-        let (area, depth) = (0.5 * patch.area, patch.depth + 1);
-        grow(nodes, light, triangle, Patch { number: first + half, corners, on_triangle, area, depth }, samples, rule);
+    let error = node.error;
+    let halves = patch.halves(first, from);
+    let mut of_half = samples.halved(from);
+    for (half, samples) in halves.iter().zip(&mut of_half) {
+        if samples.are_few() {
+            *samples = Samples::of(light, triangle, half.on_triangle);
+        }
+        let error = error.min(half.area as f32 * samples.mean_and_variance().1);
+        nodes.push(Node { error, first: LEAF, from: 0 });
     }
-}
-
-/// The light in the middles of the cells of a patch with these corners on `triangle`, so many divisions along its edge.
-fn samples(light: &Light, triangle: u32, [a, b, c]: [Vec2; 3], divisions: u16) -> Vec<Sample> {
-    let sample = |cell| {
-        let uv = cells::corners(cell, divisions).iter().sum::<Vec2>() / 3.0;
-        (uv, light.at(triangle, a + uv.x * (b - a) + uv.y * (c - a)))
-    };
-    (0..cells::count(divisions)).map(sample).collect()
-}
-
-/// Mean [lux] of the light on both sides of `triangle`, and its variance [lux²], both sides added.
-pub fn mean_and_variance(light: &Light, triangle: u32) -> ([f32; 2], f32) {
-    moments(&samples(light, triangle, WHOLE, along(light, triangle)))
-}
-
-/// Mean [lux] of the light on both sides, and its variance [lux²], both sides added.
-fn moments(samples: &[Sample]) -> ([f32; 2], f32) {
-    let count = samples.len() as f32;
-    let mean = [0, 1].map(|side| samples.iter().map(|(_, light)| light[side]).sum::<f32>() / count);
-    let square = |(_, light): &Sample| (light[0] - mean[0]).powi(2) + (light[1] - mean[1]).powi(2);
-    (mean, samples.iter().map(square).sum::<f32>() / (count - 1.0))
-}
-
-/// Divisions for the samples of a whole triangle.
-fn along(light: &Light, triangle: u32) -> u16 {
-    let along = f64::from(ALONG_EDGE) * f64::from(light.elements_on(triangle)).sqrt();
-    (along.ceil() as u16).min(MOST_ALONG_EDGE)
+    for (half, samples) in halves.into_iter().zip(of_half) {
+        if rule.asks_for(&half, nodes[half.number].error) {
+            bisect(nodes, light, triangle, half, samples, rule);
+        }
+    }
 }
 
 /// The corner from which to bisect `patch`.
-fn best_corner(patch: &Patch, samples: &[Sample]) -> u8 {
+fn best_corner(patch: &Patch, samples: &Samples) -> u8 {
     let quality = |from: u8| halves(patch.corners, from).map(quality).into_iter().fold(f32::INFINITY, f32::min);
     let qualities = [0, 1, 2].map(quality);
     let fine = |from: &u8| qualities[usize::from(*from)] >= LEAST_QUALITY;
-    let gain = |from: u8| (from, between(samples, from));
+    let gain = |from: u8| (from, samples.between(from));
     let best = (0..3).filter(fine).map(gain).max_by(|a, b| a.1.total_cmp(&b.1));
     let roundest = || (0..3).max_by(|&a, &b| qualities[usize::from(a)].total_cmp(&qualities[usize::from(b)]));
     best.map(|(from, _)| from).or_else(roundest).unwrap_or(0)
-}
-
-/// Variance [lux²] between the halves of a patch that is bisected from corner `from`, both sides added.
-fn between(samples: &[Sample], from: u8) -> f32 {
-    let (mut sums, mut counts) = ([[0.0; 2]; 2], [0.0; 2]);
-    for (uv, light) in samples {
-        let half = halved(*uv, from).0 as usize;
-        counts[half] += 1.0;
-        (0..2).for_each(|side| sums[half][side] += light[side]);
-    }
-    if counts.contains(&0.0) {
-        return 0.0;
-    }
-    let difference = |side: usize| sums[0][side] / counts[0] - sums[1][side] / counts[1];
-    let weight: f32 = counts[0] * counts[1] / (counts[0] + counts[1]).powi(2);
-    weight * (difference(0).powi(2) + difference(1).powi(2))
 }
 
 /// `4 √3 A / (a² + b² + c²)`: 1 for an equilateral triangle, 0 for a splinter (Bank 1990).

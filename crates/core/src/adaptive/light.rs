@@ -1,12 +1,14 @@
 //! What is known of the light anywhere on the surface, before the mesh is there that it is to be solved on.
 //!
-//! Direct light changes within centimetres and costs little: it is computed for every element of a first mesh, with the *same* random numbers in
+//! Direct light changes within centimetres and costs little: it is computed for every element of a uniform mesh, with the *same* random numbers in
 //! all of them. What an estimate is wrong by is then nearly the same next door, so light changes from element to element where it really
 //! does, and not because of noise. Indirect light changes slowly: it is that of a *pilot*, a quick solution on large elements, after noise was
 //! taken out as far as its error bars allow. Both are interpolated between vertices ([`VertexField`]), so it is known which way light changes
 //! within an element, too.
 
+use super::samples::Samples;
 use crate::math::Rgb;
+use crate::mesh::surface_area;
 use crate::sampling::{Sample, Sequence, SequenceName};
 use crate::transport::LightSampler;
 use crate::transport::direct_light::{DirectEstimator, Rays, STREAMS};
@@ -72,6 +74,16 @@ pub struct Light<'a> {
     field: VertexField,
     /// Number of elements that a side of each triangle has, or a part in.
     elements: Vec<u32>,
+    triangles: Vec<OnTriangle>,
+}
+
+/// The light on a whole triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct OnTriangle {
+    /// Mean irradiance [lux] on the front and on the back.
+    pub mean: [f32; 2],
+    /// Error [lux² m²] of a single element.
+    pub error: f32,
 }
 
 impl Light<'_> {
@@ -81,12 +93,29 @@ impl Light<'_> {
         for e in problem.mesh.elements().filter(|&e| !problem.mesh.place(e).back) {
             problem.mesh.pieces(e).for_each(|piece| elements[piece.triangle as usize] += 1);
         }
-        Light { problem, field: VertexField::draft(problem, irradiance, None), elements }
+        let field = VertexField::draft(problem, irradiance, None);
+        let mut light = Light { problem, field, elements, triangles: Vec::new() };
+        let on = |t: u32| {
+            let (mean, variance) = Samples::of_moments(&light, t).mean_and_variance();
+            OnTriangle { mean, error: surface_area(&problem.scene, t) as f32 * variance }
+        };
+        light.triangles = (0..light.elements.len() as u32).into_par_iter().map(on).collect();
+        light
     }
 
     /// Irradiance [lux] on the front and on the back at barycentric coordinates `uv` of `triangle`.
     pub fn at(&self, triangle: u32, uv: Vec2) -> [f32; 2] {
         [false, true].map(|back| self.field.irradiance_at(self.problem, triangle, uv, back).luminance())
+    }
+
+    /// The light on the whole of `triangle`.
+    pub fn on(&self, triangle: u32) -> OnTriangle {
+        self.triangles[triangle as usize]
+    }
+
+    /// Number of triangles.
+    pub fn triangles(&self) -> u32 {
+        self.triangles.len() as u32
     }
 
     /// Number of elements that a side of `triangle` has, or a part in; at least one.

@@ -4,8 +4,7 @@
 //! emit (bottom-up merging: Ward 1963, "Hierarchical grouping to optimize an objective function"). Errors only grow as regions do, so what an edge
 //! was worth when it was last looked at is a lower bound, and the least of them is looked at first. O(n log n) in the triangles.
 
-use super::grow;
-use super::light::Light;
+use super::light::{Light, OnTriangle};
 use crate::math::DisjointSets;
 use crate::mesh::{BEND, sides, surface_area, triangle_neighbours};
 use crate::scene::{Scene, Shape};
@@ -104,14 +103,14 @@ impl Region {
     fn of(scene: &Scene, light: &Light, triangle: u32) -> Region {
         let [a, b, c] = scene.corners(triangle);
         let area = surface_area(scene, triangle);
-        let (mean, variance) = grow::mean_and_variance(light, triangle);
+        let OnTriangle { mean, error } = light.on(triangle);
         Region {
             area,
             vector: (b - a).cross(c - a).normalize_or_zero().as_dvec3() * area,
             low: a.min(b).min(c),
             high: a.max(b).max(c),
             light: mean.map(f64::from),
-            error: area * f64::from(variance),
+            error: f64::from(error),
         }
     }
 

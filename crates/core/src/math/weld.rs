@@ -4,7 +4,7 @@
 //! points along a shared edge are computed from either side: equal up to rounding, and only up to rounding.
 
 use glam::{IVec3, Vec3};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Cells are this much wider than the tolerance, so that most points need to look into one cell only.
 const CELL: f32 = 32.0;
@@ -15,7 +15,7 @@ pub const TOLERANCE: f32 = 4e-6;
 /// Points met so far, in a grid of cells; each cell is a chain of points.
 pub struct Weld {
     tolerance: f32,
-    heads: HashMap<IVec3, u32>,
+    heads: FxHashMap<IVec3, u32>,
     next: Vec<u32>,
     positions: Vec<Vec3>,
 }
@@ -23,7 +23,7 @@ pub struct Weld {
 impl Weld {
     /// `tolerance` [m] is the distance within which two points are one.
     pub fn new(tolerance: f32) -> Weld {
-        Weld { tolerance, heads: HashMap::new(), next: Vec::new(), positions: Vec::new() }
+        Weld { tolerance, heads: FxHashMap::default(), next: Vec::new(), positions: Vec::new() }
     }
 
     /// Number of the point at `position` [m]: that of an earlier one within the tolerance, or a new one.

@@ -35,6 +35,11 @@ impl Default for Resolution {
 /// Cell numbers of one patch must fit into 32 bits, and slices into 16.
 const MOST_DIVISIONS: f64 = 30_000.0;
 
+/// Meshes with clusters have at least this share of the elements that were asked for, if they can.
+const CLOSE: f64 = 0.998;
+/// So many guesses at the length of their edges, before it is bisected.
+const GUESSES: u32 = 6;
+
 impl Resolution {
     /// Number of the sides of all triangles of `scene`, the fewest elements there can be.
     pub fn least(scene: &Scene) -> u64 {
@@ -69,9 +74,9 @@ impl Resolution {
             Resolution::Elements(0) | Resolution::Clustered(0) => {
                 Err(Error::Parameter { name: "elements", value: "0".into(), allowed: "ask for at least one element" })
             }
-            Resolution::Elements(target) => cut_for_target(scene, target),
-            Resolution::Clustered(target) => cut_with_clusters(scene, target),
-            Resolution::Extra(more) => cut_for_target(scene, Resolution::least(scene).saturating_add(more)),
+            Resolution::Elements(target) => cut_for_target(scene, in_range(target)?),
+            Resolution::Clustered(target) => cut_with_clusters(scene, in_range(target)?),
+            Resolution::Extra(more) => cut_for_target(scene, in_range(Resolution::least(scene).saturating_add(more))?),
             Resolution::MaxEdge(edge) if edge > 0.0 && edge.is_finite() => {
                 let edge = f64::from(edge);
                 let limited = |corners: [Vec3; 3]| divisions(longest_edge(corners) / edge);
@@ -91,11 +96,16 @@ impl Resolution {
     }
 }
 
+/// `elements`, if there may be so many.
+fn in_range(elements: u64) -> Result<u64, Error> {
+    if elements > MOST_ELEMENTS {
+        return Err(Error::TooManyElements { asked: elements, limit: MOST_ELEMENTS });
+    }
+    Ok(elements)
+}
+
 /// The cut whose number of elements is as close below `target` as it gets.
 fn cut_for_target(scene: &Scene, target: u64) -> Result<Cut, Error> {
-    if target > MOST_ELEMENTS {
-        return Err(Error::TooManyElements { asked: target, limit: MOST_ELEMENTS });
-    }
     let few = |edge: f64| elements(scene, edge, |corners| economical(corners, edge)) <= target;
     let longest = (0..scene.triangles.len() as u32).map(|t| longest_edge(scene.corners(t))).fold(0.0, f64::max);
     let edge = least_edge([longest / MOST_DIVISIONS, longest], 40, few);
@@ -106,18 +116,38 @@ fn cut_for_target(scene: &Scene, target: u64) -> Result<Cut, Error> {
 
 /// The same with clusters. Their number falls as edges grow, as good as always: at worst there are a few elements fewer.
 fn cut_with_clusters(scene: &Scene, target: u64) -> Result<Cut, Error> {
-    let whole = cut_for_target(scene, target)?;
     let neighbourhood = Neighbourhood::new(scene);
     let clustered = |edge: f64| {
         let cut = cut(scene, edge, |corners| economical(corners, edge));
         Cut { leaders: neighbourhood.leaders(&cut, edge), ..cut }
     };
-    let few = |edge: f64| clustered(edge).element_count(scene).is_ok_and(|count| count as u64 <= target);
     // Clusters may be as large as the scene.
     let (low, high) = scene.bounds();
     let size = 2.0 * f64::from(low.distance(high)).min(f64::from(f32::MAX));
-    let cut = clustered(least_edge([size / MOST_DIVISIONS, size], 14, few));
-    Ok(if cut.leaders.is_empty() { whole } else { cut })
+    let (mut fine, mut coarse) = (size / MOST_DIVISIONS, size.max(f64::MIN_POSITIVE));
+    let (mut best, mut last) = (None, None);
+    let aim = 0.5 * (1.0 + CLOSE) * target as f64;
+    let mut edge = f64::from(Resolution::Clustered(target).typical_edge(scene));
+    for step in 0..GUESSES + 14 {
+        let cut = clustered(edge);
+        let count = cut.element_count(scene).map_or(MOST_ELEMENTS, |count| count as u64);
+        if count > target {
+            fine = edge;
+        } else {
+            (coarse, best) = (edge, Some(cut));
+            if count as f64 >= CLOSE * target as f64 {
+                break;
+            }
+        }
+        // Half as long edges make four times as many on large triangles, fewer on small ones: the last two lengths tell.
+        let (x, y) = (edge.ln(), (count as f64).ln());
+        let slope = last.map_or(-2.0, |(other_x, other_y)| (y - other_y) / (x - other_x));
+        let guess = edge * ((aim.ln() - y) / slope).exp();
+        last = Some((x, y));
+        edge = if step < GUESSES && fine < guess && guess < coarse { guess } else { (fine * coarse).sqrt() };
+    }
+    let cut = best.unwrap_or_else(|| clustered(coarse));
+    if cut.leaders.is_empty() { cut_for_target(scene, target) } else { Ok(cut) }
 }
 
 /// Bisects the edge length [m] for the least that is long enough for `few` elements, the longest if none is.
@@ -135,10 +165,11 @@ fn least_edge([shortest, longest]: [f64; 2], steps: u32, few: impl Fn(f64) -> bo
 }
 
 /// Cuts into slices about `edge` high, and every patch into as many divisions as `of_patch` says.
-fn cut(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16) -> Cut {
-    let slices: Vec<Slices> = (0..scene.triangles.len() as u32).map(|t| slices(scene.corners(t), edge)).collect();
-    let patches = slices.iter().enumerate().flat_map(|(t, &slices)| patches(scene.corners(t as u32), slices));
-    let divisions = patches.map(of_patch).map(Division::Cells).collect();
+fn cut(scene: &Scene, edge: f64, of_patch: impl Fn([Vec3; 3]) -> u16 + Sync) -> Cut {
+    let corners: Vec<[Vec3; 3]> = (0..scene.triangles.len() as u32).map(|t| scene.corners(t)).collect();
+    let slices: Vec<Slices> = corners.par_iter().map(|&corners| slices(corners, edge)).collect();
+    let divided = |(&corners, &slices)| patches(corners, slices).map(|patch| Division::Cells(of_patch(patch)));
+    let divisions = corners.par_iter().zip(&slices).flat_map_iter(divided).collect();
     Cut { slices, divisions, leaders: Vec::new() }
 }
 

@@ -1,0 +1,82 @@
+//! Whole solves on uniform and on adaptive meshes: what is left of the error after the same number of rays, those that find the mesh included.
+//!
+//! `mesh-solves [ELEMENTS]` (400,000, the default of `isolux solve`) prints a table. Errors are those of luminance irradiance against an independent renderer
+//! at points that are uniform over the visible surfaces: RMS in the mean irradiance of the points, and the median of the relative ones, of the element at
+//! a point, and of the light that is shown there. The reference's own noise, at most 3 % a point, is in all of them. Seconds are those of the
+//! mesh and of the solve.
+
+#![allow(clippy::print_stdout)]
+
+use anyhow::{Context, Result};
+use isolux_core::adaptive::{Effort, follow_light};
+use isolux_core::mesh::Resolution;
+use isolux_core::run::run;
+use isolux_core::scene::Scene;
+use isolux_core::solvers::MonteCarlo;
+use isolux_core::solvers::budget::RAYS_PER_ELEMENT;
+use isolux_core::solvers::monte_carlo::{Budget, LightPart, Settings};
+use isolux_core::view::VertexField;
+use isolux_core::{Error, Problem, Solution};
+use isolux_io::import::{ImportOptions, read_scene};
+use isolux_testing::reference::{self, Comparison, LUMINANCE, Value};
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+const ELEMENTS: u64 = 400_000;
+const ROOMS: [&str; 2] = ["living-room", "classroom"];
+const RAYS: [u64; 3] = [25, 100, 400];
+
+fn main() -> Result<()> {
+    let elements = std::env::args().nth(1).map_or(Ok(ELEMENTS), |text| text.parse())?;
+    let scenes =
+        reference::scenes_folder().context("there is no folder shared/scenes beside the workspace or above it")?;
+    println!(
+        "| room | rays an element | mesh | element: RMS | median | shown: RMS | median | mesh found in | solved in |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for room in ROOMS {
+        let scene = read_scene(&scenes.join(room).with_extension("glb"), &ImportOptions::default())?;
+        let points = reference::read(&scenes.join("ref").join(room).with_extension("npz"))?.good;
+        for share in RAYS {
+            for (name, is_adaptive) in [("uniform", false), ("adaptive", true)] {
+                let start = Instant::now();
+                let all = share * elements;
+                let (problem, taken) = mesh(&scene, elements, all, is_adaptive)?;
+                let meshed = start.elapsed().as_secs_f64();
+                let solution = solve(&problem, Settings { budget: Budget::Rays(all - taken), ..Settings::default() })?;
+                let solved = start.elapsed().as_secs_f64() - meshed;
+                let mut comparison = Comparison::new(points.clone(), &problem)?;
+                comparison.push(&problem, &solution, &VertexField::new(&problem, &solution));
+                let errors = Value::ALL.map(|of| errors(&comparison, of));
+                let percent = errors.as_flattened().iter().map(|x| format!("{:.2} %", 100.0 * x)).collect::<Vec<_>>();
+                println!("| {room} | {share} | {name} | {} | {meshed:.1} s | {solved:.1} s |", percent.join(" | "));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The mesh, and the rays that it took.
+fn mesh(scene: &Scene, elements: u64, rays: u64, is_adaptive: bool) -> Result<(Problem, u64), Error> {
+    if !is_adaptive {
+        return Ok((Problem::new(scene.clone(), Resolution::Clustered(elements))?, 0));
+    }
+    let effort = Effort { rays: rays.min(RAYS_PER_ELEMENT * elements), seed: 1, light: LightPart::All };
+    let found = follow_light(scene.clone(), elements, effort, |problem, settings| solve(problem, settings).map(Some))?;
+    Ok((found.problem, found.rays))
+}
+
+fn solve(problem: &Problem, settings: Settings) -> Result<Solution, Error> {
+    Ok(run(&mut MonteCarlo::new(problem, settings)?, problem, |_| ControlFlow::Continue(())))
+}
+
+/// RMS error in the mean of the reference, and median relative error.
+fn errors(comparison: &Comparison, of: Value) -> [f64; 2] {
+    let exact = || comparison.points.iter().map(|point| point.irradiance.value[LUMINANCE]);
+    let mut off: Vec<f64> = comparison.luminances(0, of).zip(exact()).map(|(value, exact)| value - exact).collect();
+    let mean = exact().sum::<f64>() / off.len() as f64;
+    let rms = (off.iter().map(|off| off * off).sum::<f64>() / off.len() as f64).sqrt() / mean;
+    off.iter_mut().zip(exact()).for_each(|(off, exact)| *off = (*off / exact).abs());
+    off.sort_by(f64::total_cmp);
+    [rms, off[off.len() / 2]]
+}
