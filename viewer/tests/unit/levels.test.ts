@@ -1,5 +1,7 @@
 import { expect, test } from "vitest";
 import { coarser, type Level } from "../../src/levels";
+import { finish } from "../../src/pieces";
+import { Wedges } from "../../src/wedges";
 
 type Vector = [number, number, number];
 interface Mesh extends Level {
@@ -153,4 +155,17 @@ test("a vertex that is unusually dark does not stand for those around it", () =>
   const share = (level: Level) => level.indices.reduce((sum, v) => sum + (lux[v] === 1 ? 1 : 0), 0) / level.indices.length;
   expect(share(mesh)).toBeGreaterThan(0.1);
   for (const level of levelsOf(mesh, lux)) expect(share(level)).toBeLessThan(0.1);
+});
+
+test("a point becomes another along its surface only", () => {
+  // Crests and troughs face alike.
+  const { positions, indices } = patches((u, v) => [u, 0.03 * Math.cos(4 * Math.PI * u), v]);
+  const wedges = finish(Wedges.of(positions, indices));
+  const at = (u: number, v: number) => u * N * (N + 1) + v * N;
+  expect(wedges.canBecome(at(0.5, 0.2), at(0.5, 0.8), 0.01)).toBe(true);
+  expect(wedges.canBecome(at(0.5, 0.2), at(0.25, 0.2), 0.01)).toBe(false);
+  expect(wedges.canBecome(at(0.5, 0.2), at(0.25, 0.2), 0.1)).toBe(true);
+  // Nor does the border become what is inside, though that can become the border.
+  expect(wedges.canBecome(at(0.5, 0), at(0.5, 0.2), 1)).toBe(false);
+  expect(wedges.canBecome(at(0.5, 0.2), at(0.5, 0), 0.01)).toBe(true);
 });
