@@ -3,7 +3,8 @@
 // Elements are numbered along a space-filling curve, so triangles that follow each other lie near each other.
 
 import { Box3, Frustum, Matrix4, type PerspectiveCamera, Vector3 } from "three";
-import type { Surfaces } from "./surfaces";
+import type { Level } from "./levels";
+import type { Pieces } from "./pieces";
 
 /** Triangles of a chunk at most: few, so that little is drawn in vain, and enough to leave the processor little to do. */
 const MOST = 512;
@@ -30,14 +31,20 @@ interface Cone {
 export class Chunks {
   private readonly chunks: Chunk[] = [];
 
-  constructor(surfaces: Surfaces) {
-    surfaces.header.batches.forEach(({ first, count }, materialIndex) => {
+  private constructor() {}
+
+  /** Those of the triangles of a level. */
+  static *of(positions: Float32Array, { batches, indices }: Level): Pieces<Chunks> {
+    const found = new Chunks();
+    for (const [materialIndex, { first, count }] of batches.entries()) {
       for (let t = first; t < first + count; t += MOST) {
-        const corners = cornersOf(surfaces, t, Math.min(MOST, first + count - t));
+        const corners = cornersOf(positions, indices, t, Math.min(MOST, first + count - t));
         const box = new Box3().setFromArray(corners);
-        this.chunks.push({ start: 3 * t, count: corners.length / 3, materialIndex, box, behind: behind(corners, box) });
+        found.chunks.push({ start: 3 * t, count: corners.length / 3, materialIndex, box, behind: behind(corners, box) });
+        yield;
       }
-    });
+    }
+    return found;
   }
 
   /** What `camera` may see; chunks that follow each other are one run. */
@@ -57,7 +64,7 @@ export class Chunks {
 }
 
 /** Positions of the corners of some triangles. */
-function cornersOf({ positions, indices }: Surfaces, first: number, count: number): Float32Array {
+function cornersOf(positions: Float32Array, indices: Uint32Array, first: number, count: number): Float32Array {
   const corners = new Float32Array(9 * count);
   for (let k = 0; k < 3 * count; k++) {
     const from = 3 * indices[3 * first + k]!;

@@ -4,10 +4,11 @@ import {
   BufferAttribute, BufferGeometry, ClampToEdgeWrapping, type DataTexture, GLSL3, type IUniform, type Material, Mesh, MirroredRepeatWrapping,
   type PerspectiveCamera, RawShaderMaterial, RepeatWrapping, Scene, SRGBColorSpace, Texture, Vector3, type WebGLRenderer,
 } from "three";
-import { Chunks } from "./chunks";
 import { luminance, toLinear } from "./colour";
+import { Details } from "./details";
 import type { Light } from "./light";
-import { gather, provoke } from "./provoking";
+import type { Pieces } from "./pieces";
+import { gather, provoke, type Provoked } from "./provoking";
 import surfaceFragment from "./shaders/surface.frag.glsl";
 import surfaceVertex from "./shaders/surface.vert.glsl";
 import tone from "./shaders/tone.glsl";
@@ -27,7 +28,8 @@ export class Drawing {
   light: Light;
   private readonly scene = new Scene();
   private readonly geometry = new BufferGeometry();
-  private readonly chunks: Chunks;
+  /** Its triangles, finer and coarser. */
+  readonly details: Details;
   /** Of every element: irradiance [lux], and the standard error of its luminance. */
   readonly elements: DataTexture;
   /** Luminance [lux] of the irradiance of every element, and its standard error. */
@@ -36,6 +38,9 @@ export class Drawing {
   /** Area [m²] of every element that is drawn; 0 of the others. */
   readonly seen: Float32Array;
   private readonly source: Uint32Array;
+  /** What each material is made with, whatever is chosen; and what is chosen. */
+  private readonly materials: { material: RawShaderMaterial; defines: Record<string, string> }[] = [];
+  private chosen = "";
   private readonly emissions: { batch: Batch; uniform: IUniform<Vector3> }[] = [];
 
   private constructor(surfaces: Surfaces, light: Light, renderer: WebGLRenderer, other: Drawing | undefined) {
@@ -44,29 +49,34 @@ export class Drawing {
     this.seen = new Float32Array(surfaces.areas.length);
     for (const e of surfaces.elementOf) this.seen[e] = surfaces.areas[e]!;
     this.elements = elementTexture(surfaces.header.elements, renderer.capabilities.maxTextureSize);
-    this.chunks = other && other.surfaces === surfaces ? other.chunks : new Chunks(surfaces);
-    this.source = other && other.surfaces === surfaces ? this.borrow(other) : this.build(provokingCorner(renderer));
+    if (other && other.surfaces === surfaces) {
+      this.source = this.borrow(other);
+      this.details = other.details;
+    } else {
+      const { indices, source } = this.build(provokingCorner(renderer));
+      this.source = source;
+      this.details = new Details(surfaces, indices);
+    }
     this.geometry.setAttribute("irradiance", new BufferAttribute(new Float32Array(3 * this.source.length), 3));
   }
 
   /** Makes vertices whose values are flat over triangles at this corner; of which vertex of the surfaces each is a copy. */
-  private build(corner: 0 | 2): Uint32Array {
+  private build(corner: 0 | 2): Provoked {
     const { indices, elementOf, positions, uv, emissionUv, tint } = this.surfaces;
-    const { indices: turned, source, element } = provoke(indices, elementOf, positions.length / 3, corner);
+    const provoked = provoke(indices, elementOf, positions.length / 3, corner);
+    const { source, element } = provoked;
     const add = (name: string, values: Float32Array | undefined, size: number) =>
       values && this.geometry.setAttribute(name, new BufferAttribute(gather(values, size, source), size));
-    this.geometry.setIndex(new BufferAttribute(turned, 1));
     this.geometry.setAttribute("element", new BufferAttribute(element, 1));
     add("position", positions, 3);
     add("uv", uv, 2);
     add("emissionUv", emissionUv, 2);
     add("tint", tint, 3);
-    return source;
+    return provoked;
   }
 
   /** Takes the vertices of another drawing of the same surfaces, whose light is that before. */
   private borrow(other: Drawing): Uint32Array {
-    this.geometry.setIndex(other.geometry.getIndex());
     for (const [name, attribute] of Object.entries(other.geometry.attributes)) {
       this.geometry.setAttribute(name === "irradiance" ? "irradianceBefore" : name, attribute);
     }
@@ -89,11 +99,30 @@ export class Drawing {
     return drawing;
   }
 
-  /** Draws what `camera` sees of it; everything in `material`, if one is given. */
-  draw(renderer: WebGLRenderer, camera: PerspectiveCamera, material: Material | null = null): void {
-    this.geometry.groups = this.chunks.seenBy(camera);
+  /** Draws what `camera` sees of it at a level of detail (0 has all); everything in `material`, if one is given. */
+  draw(renderer: WebGLRenderer, camera: PerspectiveCamera, material: Material | null = null, level = 0): void {
+    const { index, chunks } = this.details.level(level);
+    this.geometry.setIndex(index);
+    this.geometry.groups = chunks.seenBy(camera);
     this.scene.overrideMaterial = material;
     renderer.render(this.scene, camera);
+  }
+
+  /** Finds coarser levels of its surfaces, in pieces. */
+  findLevels(): Pieces<void> {
+    const light = this.light.atVertices();
+    return this.details.find(Float32Array.from({ length: light.length / 3 }, (_, v) => luminance(light[3 * v]!, light[3 * v + 1]!, light[3 * v + 2]!)));
+  }
+
+  /** Takes programs that are compiled for these choices. */
+  choose(choices: Record<string, string | number>): void {
+    const key = JSON.stringify(choices);
+    if (key === this.chosen) return;
+    this.chosen = key;
+    for (const { material, defines } of this.materials) {
+      material.defines = { ...defines, ...choices };
+      material.needsUpdate = true;
+    }
   }
 
   /** Shows the light as it is now: after new light came, or lamps were dimmed. */
@@ -156,13 +185,15 @@ export class Drawing {
       defines.HAS_EMISSION_UV = "";
       Object.assign(uniforms, { emissionMap: { value: texture }, emissionMean: { value: mean } });
     }
-    return new RawShaderMaterial({
+    const material = new RawShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: surfaceVertex,
       fragmentShader: surfaceFragment.replace("out vec4 colour;", `out vec4 colour;\n${tone}`),
       defines,
       uniforms,
     });
+    this.materials.push({ material, defines });
+    return material;
   }
 
   private async image({ image, wrap: [wrapU, wrapV] }: TextureHeader, renderer: WebGLRenderer): Promise<Image> {

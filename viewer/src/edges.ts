@@ -37,7 +37,7 @@ export class Edges {
   }
 
   /** Draws the edges over what is on the screen, each drawing's in its strip. */
-  draw(parts: { drawing: Drawing; strip: Strip }[], camera: PerspectiveCamera, width: number, height: number): void {
+  draw(parts: { drawing: Drawing; strip: Strip }[], camera: PerspectiveCamera, width: number, height: number, level: number): void {
     this.target.setSize(width, height);
     this.target.scissorTest = true;
     for (const { drawing, strip } of parts) {
@@ -45,7 +45,7 @@ export class Edges {
       this.target.scissor.set(strip[0], 0, strip[1], height);
       this.renderer.setRenderTarget(this.target);
       this.renderer.clear();
-      drawing.draw(this.renderer, camera, this.numbers);
+      drawing.draw(this.renderer, camera, this.numbers, level);
     }
     this.renderer.setRenderTarget(null);
     this.renderer.setScissorTest(false);

@@ -13,6 +13,7 @@ import { Damaged } from "./part";
 import { ReadingCard } from "./reading";
 import { report } from "./report";
 import { screenshot } from "./screenshot";
+import { whenIdle } from "./pieces";
 import { Surfaces, type SurfacesHeader } from "./surfaces";
 import { type Shown, Viewer } from "./viewer";
 
@@ -24,6 +25,12 @@ async function shown(which: "" | "-before", other?: Shown): Promise<Shown | unde
   const surfaces = part ? new Surfaces(part) : other?.surfaces;
   if (!surfaces) throw new Damaged("it has light, but nothing to fall on");
   return { surfaces, light: new Light(light, other?.light) };
+}
+
+/** Finds coarser levels of detail for a camera that moves, while there is nothing better to do. */
+async function findLevels({ after, before }: Viewer): Promise<void> {
+  await whenIdle(after.findLevels());
+  if (before) await whenIdle(before.findLevels());
 }
 
 async function start(): Promise<void> {
@@ -49,6 +56,7 @@ async function start(): Promise<void> {
   new Panel(viewer, { screenshot: save, flip: () => compare?.flip(), clearReading: () => reading.clear() });
   report(viewer.after);
   viewer.draw();
+  void findLevels(viewer);
   byId("loading").hidden = true;
   document.body.classList.add("ready");
   canvas.addEventListener("webglcontextlost", () => {

@@ -33,6 +33,10 @@ export function provoke(indices: Uint32Array, elementOf: Uint32Array, vertices: 
     element[corners[k]!] = e;
     for (let c = 0; c < 3; c++) turned[3 * t + ((c - k + corner + 3) % 3)] = corners[c]!;
   }
+  // What provokes nothing has a number, too, for triangles of other levels of detail.
+  for (let k = 0; k < turned.length; k++) {
+    if (element[turned[k]!] === NONE) element[turned[k]!] = elementOf[Math.floor(k / 3)]!;
+  }
   const source = new Uint32Array(vertices + copies.length);
   for (let v = 0; v < source.length; v++) source[v] = v < vertices ? v : copies[v - vertices]!;
   return { indices: turned, source, element: element.slice(0, source.length) };

@@ -2,6 +2,7 @@
 
 import { DataTexture, FloatType, LinearFilter, type Texture } from "three";
 import { RGBAFormat, Vector2 } from "three";
+import type { Settings } from "./settings";
 import { MOST_LEVELS, type PaletteName, texels } from "./scale";
 
 /** What is shown of the surfaces; the numbers are those of surface.frag.glsl. */
@@ -10,9 +11,6 @@ export type Mode = keyof typeof MODES;
 
 /** Uniforms of all materials. */
 export const shared = {
-  mode: { value: 0 as number },
-  byElement: { value: false },
-  textured: { value: true },
   exposure: { value: 1 },
   relativeError: { value: true },
   palette: { value: null as Texture | null },
@@ -22,6 +20,16 @@ export const shared = {
   levels: { value: new Float32Array(MOST_LEVELS) },
   lineWidth: { value: 1.5 },
 };
+
+/** What the programs of all surfaces are compiled for. */
+export function choices({ mode, byElement, textured }: Settings, hasLines: boolean): Record<string, string | number> {
+  return {
+    MODE: MODES[mode],
+    ...(byElement && { BY_ELEMENT: "" }),
+    ...(textured && { TEXTURED: "" }),
+    ...(hasLines && { LINES: "" }),
+  };
+}
 
 const PALETTE_SIZE = 256;
 const palettes = new Map<PaletteName, Texture>();

@@ -2,19 +2,21 @@
 
 import { Color, Vector3, WebGLRenderer } from "three";
 import { Camera } from "./camera";
+import { triangles } from "./details";
+import { type Draft, Drafts } from "./drafts";
 import { Drawing } from "./drawing";
 import { Edges, type Strip } from "./edges";
 import type { Light } from "./light";
 import { type Picked, Picking } from "./picking";
+import { drawsByProcessor } from "./processor";
 import { automatic, levels, type PaletteName, type Scale, symmetric } from "./scale";
 import { defaults, type Settings } from "./settings";
 import type { Surfaces } from "./surfaces";
-import { MODES, paletteTexture, shared } from "./uniforms";
+import { choices, paletteTexture, shared } from "./uniforms";
 
 /** Pixels of the picture for each of the page, along each side, at most: more cost time and cannot be seen. */
 export const MOST_PIXELS = 2;
-/** The same where the processor draws: while the camera moves, and once it stands. Multisampling would take three times as long. */
-const DRAFT_PIXELS = 0.5;
+/** The same where the processor draws and the camera stands. Multisampling would take three times as long. */
 const STILL_PIXELS = 2;
 /** Milliseconds after which a camera stands. */
 const STILL = 400;
@@ -37,14 +39,17 @@ export class Viewer {
   readonly drawn: (() => void)[] = [];
   /** Called when the camera stands again, or something else has changed while it stood. */
   readonly stood: (() => void)[] = [];
-  /** Draw calls and triangles of the last picture. */
-  work = { calls: 0, triangles: 0, pictures: 0 };
+  /** Draw calls, triangles and level of detail of the last picture. */
+  work = { calls: 0, triangles: 0, pictures: 0, level: 0 };
   private readonly picking: Picking;
   private readonly edges: Edges;
   private readonly canvas: HTMLCanvasElement;
   private readonly isSoftware: boolean;
   private isOld = true;
+  private readonly drafts: Drafts;
+  /** Whether the last picture was not the whole one, and whether how long it takes is measured. */
   private isDraft = false;
+  private isMeasured = false;
   private moved = -Infinity;
   private seenStanding = 0;
   private last = 0;
@@ -53,6 +58,7 @@ export class Viewer {
   private constructor(canvas: HTMLCanvasElement, surfaces: Surfaces) {
     this.canvas = canvas;
     this.isSoftware = drawsByProcessor();
+    this.drafts = new Drafts(this.isSoftware);
     this.renderer = new WebGLRenderer({ canvas, antialias: !this.isSoftware, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.setClearColor(new Color(0), 0);
@@ -61,10 +67,11 @@ export class Viewer {
     this.camera = new Camera(canvas, surfaces.header, () => this.move());
     new ResizeObserver(() => this.update()).observe(canvas);
     const loop = (now: number) => {
+      if (this.isMeasured) this.drafts.took(now - this.last);
+      this.isMeasured = false;
       if (this.camera.step(Math.min((now - this.last) / 1000, 0.1))) this.move();
       const isMoving = performance.now() - this.moved < STILL;
-      const isDraft = this.isSoftware && isMoving;
-      if (this.isOld || (this.isDraft && !isDraft)) this.draw(isDraft);
+      if (this.isOld || (this.isDraft && !isMoving)) this.draw(isMoving ? this.due : undefined);
       if (!isMoving && this.seenStanding !== this.work.pictures) {
         this.seenStanding = this.work.pictures;
         this.stood.forEach((told) => told());
@@ -172,13 +179,26 @@ export class Viewer {
     return scale;
   }
 
-  /** Draws the picture now; a draft has fewer pixels. */
-  draw(isDraft = false): void {
+  /** Pixels of the picture for each of the page, along each side. */
+  private get pixels(): number {
+    return Math.min(window.devicePixelRatio, MOST_PIXELS);
+  }
+
+  /** What is drawn while the camera moves. */
+  private get due(): Draft {
+    const { clientWidth, clientHeight } = this.canvas;
+    const details = new Set([this.after, this.before ?? this.after].map(({ details }) => details));
+    this.drafts.fit(this.pixels, clientWidth * clientHeight, triangles(details));
+    return this.drafts.due;
+  }
+
+  /** Draws the picture now, or a draft. */
+  draw(draft?: Draft): void {
     this.isOld = false;
-    this.isDraft = isDraft;
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.after || width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(this.isSoftware ? (isDraft ? DRAFT_PIXELS : STILL_PIXELS) : Math.min(window.devicePixelRatio, MOST_PIXELS));
+    const { pixels, level } = draft ?? { pixels: this.isSoftware ? STILL_PIXELS : this.pixels, level: 0 };
+    this.renderer.setPixelRatio(pixels);
     this.renderer.setSize(width, height, false);
     this.setUniforms();
     this.camera.fit(width, height);
@@ -188,18 +208,23 @@ export class Viewer {
     this.renderer.info.reset();
     const ratio = this.renderer.getPixelRatio();
     const parts = this.parts(width);
+    const chosen = choices(this.settings, this.lines.length > 0);
     for (const { drawing, strip: [left, wide] } of parts) {
       this.renderer.setScissorTest(true);
       this.renderer.setScissor(left, 0, wide, height);
-      drawing.draw(this.renderer, this.camera.camera);
+      drawing.choose(chosen);
+      drawing.draw(this.renderer, this.camera.camera, null, level);
     }
     this.renderer.setScissorTest(false);
     if (this.settings.edges) {
       const inPixels = parts.map(({ drawing, strip }) => ({ drawing, strip: strip.map((v) => Math.floor(v * ratio)) as Strip }));
-      this.edges.draw(inPixels, this.camera.camera, Math.floor(width * ratio), Math.floor(height * ratio));
+      this.edges.draw(inPixels, this.camera.camera, Math.floor(width * ratio), Math.floor(height * ratio), level);
     }
     const { calls, triangles } = this.renderer.info.render;
-    this.work = { calls, triangles, pictures: this.work.pictures + 1 };
+    this.isDraft = draft !== undefined && (level > 0 || this.isSoftware || pixels !== this.pixels);
+    this.isMeasured = draft !== undefined;
+    if (!draft) this.drafts.pause();
+    this.work = { calls, triangles, pictures: this.work.pictures + 1, level };
     this.drawn.forEach((told) => told());
   }
 
@@ -214,9 +239,6 @@ export class Viewer {
 
   private setUniforms(): void {
     const { settings, scale, lines } = this;
-    shared.mode.value = MODES[settings.mode];
-    shared.byElement.value = settings.byElement;
-    shared.textured.value = settings.textured;
     shared.exposure.value = 2 ** this.stops;
     shared.relativeError.value = settings.relativeError;
     shared.palette.value = paletteTexture(this.palette);
@@ -226,13 +248,4 @@ export class Viewer {
     shared.levels.value.set(lines);
     shared.lineWidth.value = 1.6 * this.renderer.getPixelRatio();
   }
-}
-
-/** Whether this machine has no graphics card that the browser would use. */
-function drawsByProcessor(): boolean {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  const told = gl?.getExtension("WEBGL_debug_renderer_info");
-  const name = gl && told ? String(gl.getParameter(told.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|softpipe|basic render/i.test(name);
 }

@@ -1,9 +1,14 @@
-// What is seen of a surface: its light as the eye sees it, or a quantity in false colours; isolux lines over both.
+// What is seen of a surface: its light as the eye sees it, or a quantity in false colours; isolux lines over both. There is a program for each
+// choice (uniforms.ts): MODE; BY_ELEMENT, each element shows the one value that was computed for it; TEXTURED; LINES. Processors that draw take
+// twice as long if programs choose themselves.
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 
-const int LIGHT = 0, ILLUMINANCE = 1, ERROR = 2, DIFFERENCE = 3;
+#define LIGHT 0
+#define ILLUMINANCE 1
+#define ERROR 2
+#define DIFFERENCE 3
 
 centroid in vec3 vIrradiance;
 #ifdef HAS_BEFORE
@@ -20,10 +25,6 @@ centroid in vec3 vTint;
 #endif
 flat in uint vElement;
 
-uniform int mode;
-// Whether each element shows the one value that was computed for it.
-uniform bool byElement;
-uniform bool textured;
 // What luminance is multiplied by.
 uniform float exposure;
 // Irradiance of every element, and the standard error of its luminance; of the other solution the same.
@@ -34,7 +35,7 @@ uniform bool relativeError;
 uniform sampler2D palette;
 uniform vec2 range;
 uniform bool logarithmic;
-// Isolux lines: their number, which may be 0, and illuminances, rising.
+// Isolux lines: their number and illuminances, rising.
 uniform int levelCount;
 uniform float levels[24];
 // Width of a line in pixels.
@@ -67,11 +68,15 @@ vec3 seen(vec3 irradiance) {
 #ifdef HAS_TINT
   rho *= vTint;
 #endif
-#ifdef HAS_UV
-  rho *= textured ? texture(reflectivityMap, vUv).rgb : reflectivityMean;
+#if defined(HAS_UV) && defined(TEXTURED)
+  rho *= texture(reflectivityMap, vUv).rgb;
+#elif defined(HAS_UV)
+  rho *= reflectivityMean;
 #endif
-#ifdef HAS_EMISSION_UV
-  emitted *= textured ? texture(emissionMap, vEmissionUv).rgb : emissionMean;
+#if defined(HAS_EMISSION_UV) && defined(TEXTURED)
+  emitted *= texture(emissionMap, vEmissionUv).rgb;
+#elif defined(HAS_EMISSION_UV)
+  emitted *= emissionMean;
 #endif
   return (emitted + rho * irradiance) * 0.31830988618;
 }
@@ -102,31 +107,30 @@ float onLine(float lux) {
 
 void main() {
   vec3 smoothLight = max(vIrradiance, 0.0);
-  vec3 light = byElement ? ofElement(elements).rgb : smoothLight;
-  vec3 shown;
-  if (mode == LIGHT) {
-    shown = onScreen(filmic(seen(light) * exposure));
-  } else if (mode == ILLUMINANCE) {
-    shown = falseColour(luminance(light));
-  } else if (mode == ERROR) {
-    vec4 element = ofElement(elements);
-    float lux = luminance(element.rgb);
-    float error = relativeError ? 100.0 * element.a / max(lux, 1e-20) : element.a;
-    // An error that is not known is grey, as in the dark.
-    shown = isnan(element.a) || (relativeError && lux <= 0.0) ? vec3(0.25) : falseColour(error);
-  } else {
-#ifdef HAS_BEFORE
-    vec3 before = byElement ? ofElement(elementsBefore).rgb : vIrradianceBefore;
+#ifdef BY_ELEMENT
+  vec3 light = ofElement(elements).rgb;
 #else
-    vec3 before = ofElement(elementsBefore).rgb;
-    light = ofElement(elements).rgb;
+  vec3 light = smoothLight;
 #endif
-    shown = falseColour(luminance(light) - luminance(before));
-  }
-  if (levelCount > 0) {
-    float line = onLine(luminance(smoothLight));
-    vec3 ink = luminance(shown) > 0.45 ? vec3(0.0) : vec3(1.0);
-    shown = mix(shown, ink, 0.8 * line);
-  }
+#if MODE == LIGHT
+  vec3 shown = onScreen(filmic(seen(light) * exposure));
+#elif MODE == ILLUMINANCE
+  vec3 shown = falseColour(luminance(light));
+#elif MODE == ERROR
+  vec4 element = ofElement(elements);
+  float lux = luminance(element.rgb);
+  float error = relativeError ? 100.0 * element.a / max(lux, 1e-20) : element.a;
+  // An error that is not known is grey, as in the dark.
+  vec3 shown = isnan(element.a) || (relativeError && lux <= 0.0) ? vec3(0.25) : falseColour(error);
+#elif defined(HAS_BEFORE) && !defined(BY_ELEMENT)
+  vec3 shown = falseColour(luminance(light) - luminance(vIrradianceBefore));
+#else
+  vec3 shown = falseColour(luminance(ofElement(elements).rgb) - luminance(ofElement(elementsBefore).rgb));
+#endif
+#ifdef LINES
+  float line = onLine(luminance(smoothLight));
+  vec3 ink = luminance(shown) > 0.45 ? vec3(0.0) : vec3(1.0);
+  shown = mix(shown, ink, 0.8 * line);
+#endif
   colour = vec4(shown, 1.0);
 }

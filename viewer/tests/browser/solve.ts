@@ -12,6 +12,7 @@ export default function solve(): void {
   mkdirSync(OUT, { recursive: true });
   run("solve", "cornell-box", "--elements", "4000", "--rays", "2M", "--width", "640",
     "-o", "room.html", "-o", "room.csv", "-o", "room.png", "-o", "room.isolux");
+  run("solve", "cornell-box", "--elements", "40000", "--rays", "400k", "-o", "fine.html");
   run("solve", "office", "--elements", "6000", "--rays", "2M", "--light-groups", "Ceiling=ceiling light*;Windows=window*", "-o", "day.isolux");
   run("mix", "day.isolux", "--set", "Ceiling=0.5", "--set", "Windows=1.5*#ff8040", "-o", "evening.isolux", "-o", "evening.csv");
   run("view", "day.isolux", "-o", "day.html");

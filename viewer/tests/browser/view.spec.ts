@@ -225,16 +225,3 @@ test("isolux lines bear their values", async ({ page }) => {
   expect(await labels()).toEqual([]);
   expect(await written()).toBe(blank);
 });
-
-test("while the camera moves by software a draft is drawn, and the whole picture once it stands", async ({ page }) => {
-  await open(page, "room.html");
-  const ratio = () => page.evaluate(() => (window as any).isolux.viewer.renderer.getPixelRatio() as number);
-  expect(await ratio()).toBe(2);
-  await page.mouse.move(400, 300);
-  await page.mouse.down();
-  await page.mouse.move(480, 320, { steps: 4 });
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  expect(await ratio()).toBe(0.5);
-  await page.mouse.up();
-  await expect.poll(ratio).toBe(2);
-});

@@ -2,10 +2,12 @@ import { PerspectiveCamera, Vector3 } from "three";
 import { expect, test } from "vitest";
 import { Chunks } from "../../src/chunks";
 import { nearby } from "../../src/nearby";
-import type { Batch, Surfaces } from "../../src/surfaces";
+import type { Level } from "../../src/levels";
+import { finish } from "../../src/pieces";
+import type { Batch } from "../../src/surfaces";
 
 /** Balls of n x n squares seen from outside, in two batches, their triangles in no order. */
-function balls(n: number): Surfaces {
+function balls(n: number): Level & { positions: Float32Array } {
   const positions: number[] = [];
   const indices: number[] = [];
   for (const center of [[0, 0, 0], [3, 1, 0], [-2, 0, 4], [0, 5, -3]] as const) {
@@ -28,12 +30,12 @@ function balls(n: number): Surfaces {
   expect([...order].sort((a, b) => a - b)).toEqual(Array.from({ length: count }, (_, t) => t));
   expect(Math.max(...order.slice(0, 1000))).toBe(999);
   const sorted = Uint32Array.from([...order].flatMap((t) => [...mixed.subarray(3 * t, 3 * t + 3)]));
-  return { header: { batches }, positions: Float32Array.from(positions), indices: sorted } as unknown as Surfaces;
+  return { batches, positions: Float32Array.from(positions), indices: sorted };
 }
 
 test("all that is seen is drawn, and much of what is not is left out", () => {
   const surfaces = balls(100);
-  const chunks = new Chunks(surfaces);
+  const chunks = finish(Chunks.of(surfaces.positions, surfaces));
   const count = surfaces.indices.length / 3;
   const corner = (t: number, k: number) => new Vector3().fromArray(surfaces.positions, 3 * surfaces.indices[3 * t + k]!);
   let drawn = 0;
@@ -63,14 +65,13 @@ test("all that is seen is drawn, and much of what is not is left out", () => {
 
 test("between two floors the lower one is seen, and below both nothing is", () => {
   const floor = (y: number) => [[-1, y, -1], [-1, y, 1], [1, y, -1]].flat();
-  const surfaces = {
-    header: { batches: [{ first: 0, count: 2 }] }, positions: Float32Array.from([...floor(0), ...floor(1)]), indices: Uint32Array.from([0, 1, 2, 3, 4, 5]),
-  } as unknown as Surfaces;
+  const positions = Float32Array.from([...floor(0), ...floor(1)]);
+  const floors = { batches: [{ first: 0, count: 2 }], indices: Uint32Array.from([0, 1, 2, 3, 4, 5]) };
   const camera = new PerspectiveCamera(90, 1, 0.01, 100);
   const seenFrom = (y: number) => {
     camera.position.set(0, y, 1);
     camera.lookAt(0, 0.4, 0);
-    return new Chunks(surfaces).seenBy(camera).length;
+    return finish(Chunks.of(positions, floors)).seenBy(camera).length;
   };
   expect([2, 0.3, 0.01].map(seenFrom)).toEqual([1, 1, 1]);
   expect([-0.01, -1].map(seenFrom)).toEqual([0, 0]);
