@@ -21,6 +21,7 @@ def solve(
     *,
     elements: float | None = None,
     max_edge: float | None = None,
+    mesh: Literal["adaptive", "uniform"] | None = None,
     contacts: bool = False,
     error: float | None = None,
     confidence: float = 0.95,
@@ -47,6 +48,7 @@ def solve(
         elements: pieces of surface that get one value each, about so many; 400,000 unless said otherwise (2000 for deterministic methods).
             Small triangles of smooth surfaces are put together.
         max_edge: instead, the longest edge of an element [m].
+        mesh: "adaptive" elements are small where the light changes, "uniform" ones equal, which they are unless said otherwise, and for little time.
         contacts: whether surfaces are cut where others stand on them, so that no light passes below.
         error: goes on until the error is at most this share of the mean irradiance: 0.02 is two hundredths. `rays` and `time` limit it;
             if they are too little an `AccuracyWarning` says so.
@@ -78,8 +80,9 @@ def solve(
     if on_interrupt not in ("keep", "raise"):
         raise ParameterError.of("on_interrupt", on_interrupt, "keep or raise")
     request = _request(method=method, seed=seed, light=light, **options)
-    problem = _problem(scene, request, elements, max_edge, contacts)
     limits = {"error": error, "confidence": confidence, "error_of": error_of, "rays": whole(rays), "time": time}
+    cut = {"elements": whole(elements), "max_edge": max_edge, "mesh": mesh, "contacts": contacts}
+    problem, limits = _problem(scene, request, cut, limits, threads)
 
     with bar("solving", progress) as shown:
 
@@ -118,13 +121,17 @@ def _request(**options: Any) -> _native.Request:
     return _native.Request({"method": None} | given)
 
 
-def _problem(scene: Scenelike, request: _native.Request, elements: float | None, max_edge: float | None, contacts: bool) -> Problem:
-    check_size(elements, max_edge)
+def _problem(
+    scene: Scenelike, request: _native.Request, cut: dict[str, Any], limits: dict[str, Any], threads: int | None
+) -> tuple[Problem, dict[str, Any]]:
+    """The scene, cut into elements, and the limits that are left: to find adaptive ones takes some of the rays and of the time."""
+    check_size(cut["elements"], cut["max_edge"])
     if not isinstance(scene, Problem):
-        return Problem._of(request.problem(as_scene(scene)._native, whole(elements), max_edge, contacts))
-    if elements is not None or max_edge is not None or contacts:
-        raise ParameterError.of("elements", elements, "a Problem is cut into elements already: say so when it is made")
-    return scene
+        native, left = request.problem(as_scene(scene)._native, cut, limits, threads)
+        return Problem._of(native), left
+    if any(cut.values()):
+        raise ParameterError.of("elements", cut["elements"], "a Problem is cut into elements already: say so when it is made")
+    return scene, limits
 
 
 def _groups(groups: LightGroups | None) -> str | list[tuple[str, list[str]]] | None:

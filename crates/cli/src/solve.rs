@@ -8,7 +8,7 @@ use crate::drive::Drive;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::interrupt::{Interrupt, watch};
 use crate::live::LiveArguments;
-use crate::mesh::{Limits, MeshArguments, Meshed};
+use crate::mesh::{self, MeshArguments};
 use crate::numbers::{parse_count, parse_time};
 use crate::output::Outputs;
 use crate::progress::{Display, ProgressArguments};
@@ -17,6 +17,7 @@ use crate::solver::SolverArguments;
 use crate::summary::Summary;
 use crate::{input, terminal};
 use isolux_core::Problem;
+use isolux_core::adaptive::{Meshed, Wish};
 use isolux_core::scene::cut_at_contacts;
 use isolux_core::solvers::Progress;
 use isolux_core::solvers::monte_carlo::Budget;
@@ -249,9 +250,10 @@ impl Solve {
         let resolution = chosen.resolution(self.elements, self.max_edge);
         let detail = DETAIL * resolution.typical_edge(&scene);
         let scene = if self.contacts == Contacts::Cut { cut_at_contacts(scene, detail) } else { scene };
-        let limits = Limits { rays: self.budget.rays, time: self.budget.time, light: self.solver.light() };
         let check = |problem: &Problem| self.solver.solver(&chosen, problem, budget).map(drop);
-        let Meshed { problem, budget, took } = self.mesh.cut(scene, resolution, budget, limits, display, check)?;
+        let spread = self.mesh.spread();
+        let wish = Wish { resolution, spread, budget, time: self.budget.time, light: self.solver.light() };
+        let Meshed { problem, budget, took, .. } = mesh::cut(wish, scene, display, check)?;
         let solver = self.solver.solver(&chosen, &problem, budget)?;
         Ok(Checkpoint { problem, solver, clock: Clock { solved: took, limit: self.budget.time } })
     }

@@ -70,8 +70,8 @@ fn indirect_light_is_part_of_all_light_and_says_so() {
     assert!(0.0 < mean(&indirect) && mean(&indirect) < mean(&all), "{indirect}");
     assert_eq!(all["balance"]["emitted"], indirect["balance"]["emitted"]);
     // Stochastic Jacobi shoots the same rays for both, auto as many as are best.
-    let [all_shot, indirect_shot] =
-        ["all", "indirect"].map(|light| solve(&["--method", "stochastic-jacobi", "--light", light]));
+    let shot = ["--method", "stochastic-jacobi", "--mesh", "uniform"];
+    let [all_shot, indirect_shot] = ["all", "indirect"].map(|light| solve(&with(&shot, &["--light", light])));
     assert_eq!(all_shot["balance"], indirect_shot["balance"]);
     assert_eq!(indirect["parameters"]["light"], "indirect");
     assert!(
@@ -125,21 +125,26 @@ fn elements_of_any_kind_can_be_asked_for() {
 fn the_mesh_follows_the_light_and_not_the_seed_or_the_method() {
     let folder = Folder::new();
     let solve = |name: &str, arguments: &[&str]| {
-        let all = ["solve", "cornell-box", "--elements", "3000", "--rays", "300k", "--json", "-o", name];
+        let all = ["solve", "cornell-box", "--elements", "3000", "--json", "-o", name];
         folder.json(&with(&all, arguments))
     };
-    let follow = ["--mesh", "adaptive"];
+    let follow = ["--mesh", "adaptive", "--rays", "300k"];
     let adaptive = solve("a.isolux", &follow);
-    let uniform = solve("u.isolux", &[]);
+    let uniform = solve("u.isolux", &["--rays", "300k"]);
     let elements = |summary: &serde_json::Value| summary["elements"].as_u64().unwrap();
     assert!((2700..=3000).contains(&elements(&adaptive)) && elements(&uniform) <= 3000, "{adaptive}");
     assert!(folder.fails(2, &["compare", "a.isolux", "u.isolux"]).contains("different elements"));
     // A part of the rays finds the mesh.
     assert!(adaptive["rays"].as_u64() < uniform["rays"].as_u64());
     solve("b.isolux", &with(&follow, &["--seed", "2"]));
-    solve("c.isolux", &with(&follow, &["--method", "stochastic-jacobi"]));
+    solve("c.isolux", &["--mesh", "adaptive", "--method", "stochastic-jacobi", "--rays", "200k"]);
     folder.prints(&["merge", "a.isolux", "b.isolux", "-o", "m.isolux"]);
     folder.prints(&["compare", "a.isolux", "c.isolux"]);
+    // Where there is no time to find it, it is uniform.
+    let short = ["--elements", "3000", "--mesh", "adaptive", "--time", "0.01s", "-o", "d.isolux"];
+    let short = folder.run(&with(&["solve", "cornell-box"], &short));
+    assert!(String::from_utf8_lossy(&short.stderr).contains("the time is too short"), "{short:?}");
+    folder.prints(&["compare", "d.isolux", "u.isolux"]);
 }
 
 #[test]

@@ -61,17 +61,23 @@ impl Problem {
     /// Those of the core.
     pub fn cut(py: Python, scene: &Scene, resolution: Resolution, contacts: bool) -> Result<Problem, Fail> {
         let scene = scene.inner.clone();
-        let problem = to_its_end(py, || {
-            let detail = resolution.typical_edge(&scene);
-            let scene = if contacts { cut_at_contacts(scene, detail) } else { scene };
-            isolux_core::Problem::new(scene, resolution)
-        })?;
+        let problem = to_its_end(py, || isolux_core::Problem::new(cut_scene(scene, resolution, contacts), resolution))?;
         Ok(Problem::new(problem))
     }
 
     fn known(&self) -> &Known {
         self.known.get_or_init(|| Known::of(&self.inner))
     }
+}
+
+/// `scene`, its surfaces cut where others stand on them, if `contacts` says so.
+pub fn cut_scene(
+    scene: isolux_core::scene::Scene,
+    resolution: Resolution,
+    contacts: bool,
+) -> isolux_core::scene::Scene {
+    let detail = resolution.typical_edge(&scene);
+    if contacts { cut_at_contacts(scene, detail) } else { scene }
 }
 
 #[pymethods]

@@ -1,9 +1,12 @@
 //! What a solve is told of its method: the names that people write, looked up in the tables of the core.
 
+use crate::background::in_background;
 use crate::fail::Fail;
-use crate::problem::Problem;
+use crate::problem::{Problem, cut_scene};
 use crate::scene::Scene;
+use crate::solve::Limits;
 use isolux_core::Error;
+use isolux_core::adaptive::{Meshed, Spread, Wish};
 use isolux_core::choice::{Choice, TableEntry};
 use isolux_core::sampling::address::Address;
 use isolux_core::solvers::monte_carlo::LightPart;
@@ -11,11 +14,14 @@ use isolux_core::solvers::monte_carlo::axes::Axis;
 use isolux_core::solvers::{Asked, Chosen};
 use isolux_core::transport::Leaving;
 use pyo3::prelude::*;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A method with what it is told.
 #[pyclass(frozen, module = "isolux._native")]
 pub struct Request {
     pub chosen: Chosen,
+    light: LightPart,
 }
 
 /// The entries of a dict; `None`, and what is not in it, are as the method has them.
@@ -59,10 +65,21 @@ struct Options {
     link_power: Option<f64>,
 }
 
+/// How a scene is cut: the entries of a dict.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Cut {
+    elements: Option<u64>,
+    max_edge: Option<f32>,
+    mesh: Option<String>,
+    contacts: bool,
+}
+
 #[pymethods]
 impl Request {
     #[new]
     fn new(options: Options) -> Result<Request, Fail> {
+        let light = named("light", options.light, &LightPart::ALL, LightPart::name)?;
         let asked = Asked {
             method: options.method,
             sequence: choice(options.sequence)?,
@@ -77,13 +94,13 @@ impl Request {
             seed: options.seed,
             replicates: options.replicates,
             leaving: named("leaving", options.leaving, &Leaving::ALL, Leaving::name)?,
-            light: named("light", options.light, &LightPart::ALL, LightPart::name)?,
+            light,
             factors: options.factors,
             unshot: options.unshot,
             ambient: options.ambient,
             link_power: options.link_power,
         };
-        Ok(Request { chosen: asked.chosen()? })
+        Ok(Request { chosen: asked.chosen()?, light: light.unwrap_or_default() })
     }
 
     #[getter]
@@ -91,16 +108,33 @@ impl Request {
         self.chosen.is_deterministic()
     }
 
-    /// Cuts `scene` as suits the method.
+    /// Cuts `scene` as suits the method and the `limits`; and the limits that are left.
     fn problem(
         &self,
         py: Python,
         scene: &Scene,
-        elements: Option<u64>,
-        max_edge: Option<f32>,
-        contacts: bool,
-    ) -> Result<Problem, Fail> {
-        Problem::cut(py, scene, self.chosen.resolution(elements, max_edge), contacts)
+        cut: Cut,
+        limits: Limits,
+        threads: Option<usize>,
+    ) -> Result<(Problem, Limits), Fail> {
+        let scene = scene.inner.clone();
+        let budget = limits.budget(&scene, self)?;
+        let spread = named("mesh", cut.mesh, &Spread::ALL, Spread::name)?.unwrap_or_default();
+        let resolution = self.chosen.resolution(cut.elements, cut.max_edge);
+        let wish = Wish { resolution, spread, budget, time: limits.duration()?, light: self.light };
+        let is_interrupted = AtomicBool::new(false);
+        let look = || py.check_signals().inspect_err(|_| is_interrupted.store(true, Ordering::Relaxed));
+        let work = || -> Result<Meshed, Error> {
+            let check = |problem: &isolux_core::Problem| self.chosen.solver(problem, budget, None).map(drop);
+            wish.cut(cut_scene(scene, resolution, cut.contacts), check, |_| {
+                match is_interrupted.load(Ordering::Relaxed) {
+                    true => ControlFlow::Break(()),
+                    false => ControlFlow::Continue(()),
+                }
+            })
+        };
+        let Meshed { problem, budget, took, .. } = in_background(py, threads, look, work)??;
+        Ok((Problem::new(problem), limits.left(budget, took)))
     }
 }
 

@@ -148,7 +148,7 @@ impl Solution {
 
     /// What it is off by at most with such `confidence`, relative to a mean; `of` is rms, max, mean, or object:NAME.
     fn error_bound(&self, confidence: f64, of: &str) -> Result<f64, Fail> {
-        Ok(quantity(self.problem(), of)?.error_bound(self.problem(), &self.inner, confidence))
+        Ok(quantity(&self.problem().scene, of)?.error_bound(self.problem(), &self.inner, confidence))
     }
 
     /// The best estimate of the scene's RMS error, relative to the mean irradiance; NaN if it is not known.

@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// When a solve is done: the entries of a dict.
-#[derive(FromPyObject)]
+#[derive(FromPyObject, IntoPyObject)]
 #[pyo3(from_item_all)]
 pub struct Limits {
     error: Option<f64>,
@@ -75,8 +75,8 @@ pub fn solve(
 ) -> Result<(Solution, &'static str, Option<&'static str>), Fail> {
     let py = problem.py();
     let inner = &*problem.get().inner;
-    let budget = limits.budget(inner, request)?;
-    let time = limits.time.map(seconds).transpose()?;
+    let budget = limits.budget(&inner.scene, request)?;
+    let time = limits.duration()?;
     let groups = groups.map(Groups::grouping).transpose()?;
     check_threads(threads)?;
 
@@ -126,7 +126,11 @@ pub fn solve(
 }
 
 impl Limits {
-    fn budget(&self, problem: &isolux_core::Problem, request: &Request) -> Result<Budget, Error> {
+    /// As the core says it.
+    ///
+    /// # Errors
+    /// For what makes no sense, or not with the method.
+    pub fn budget(&self, scene: &isolux_core::scene::Scene, request: &Request) -> Result<Budget, Error> {
         request.chosen.check_limits(self.error.is_some(), self.rays.is_some())?;
         let share = |name, value: f64| {
             let allowed = "a share above 0 and below 1; 0.02 is two hundredths";
@@ -138,7 +142,7 @@ impl Limits {
             Some(error) => Some(Accuracy {
                 error: share("error", error)?,
                 confidence: share("confidence", self.confidence)?,
-                of: quantity(problem, &self.error_of)?,
+                of: quantity(scene, &self.error_of)?,
             }),
         };
         if self.rays == Some(0) {
@@ -146,18 +150,37 @@ impl Limits {
         }
         Ok(Budget::asked(accuracy, self.rays, self.time.is_some()).unwrap_or(Budget::Heuristic))
     }
+
+    /// The time, if it is limited.
+    ///
+    /// # Errors
+    /// If it is not above 0.
+    pub fn duration(&self) -> Result<Option<Duration>, Error> {
+        self.time.map(seconds).transpose()
+    }
+
+    /// What is left after cutting took some of the time, and of the rays all but what the `budget` has.
+    pub fn left(self, budget: Budget, took: Duration) -> Limits {
+        let rays = match budget {
+            Budget::Rays(rays) => Some(rays),
+            Budget::Accuracy { most_rays, .. } => most_rays,
+            Budget::Heuristic | Budget::Endless => None,
+        };
+        let time = self.time.map(|time| (time - took.as_secs_f64()).max(1e-3));
+        Limits { rays, time, ..self }
+    }
 }
 
 /// Whose error is meant: rms, max, mean, or object:NAME.
 ///
 /// # Errors
 /// For anything else, and an object that is not there.
-pub fn quantity(problem: &isolux_core::Problem, text: &str) -> Result<Quantity, Error> {
+pub fn quantity(scene: &isolux_core::scene::Scene, text: &str) -> Result<Quantity, Error> {
     match (text, text.strip_prefix("object:")) {
         ("rms", _) => Ok(Quantity::Rms),
         ("max", _) => Ok(Quantity::Max),
         ("mean", _) => Ok(Quantity::Mean),
-        (_, Some(name)) => Quantity::of_object(&problem.scene, name),
+        (_, Some(name)) => Quantity::of_object(scene, name),
         _ => Err(Error::unknown_name("error", text, ["rms", "max", "mean", "object:NAME"])),
     }
 }

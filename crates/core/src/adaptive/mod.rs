@@ -22,6 +22,9 @@ mod grow;
 mod light;
 mod merge;
 mod samples;
+mod wish;
+
+pub use self::wish::{Meshed, Spread, Wish};
 
 use self::borders::Borders;
 use self::counts::Counts;
@@ -40,7 +43,7 @@ use rayon::prelude::*;
 /// Share of the elements of the mesh at last that the pilot has.
 const PILOT: f64 = 0.25;
 /// Share of the whole work that the pilot may take.
-pub const SHARE: f64 = 0.08;
+const SHARE: f64 = 0.08;
 /// Rays of an element for its direct light, as a share of those of the solve.
 const DIRECT: f64 = 0.12;
 /// Fewest and most rays of an element for direct light.

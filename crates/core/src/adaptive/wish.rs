@@ -1,0 +1,139 @@
+//! The mesh that a solve gets: elements that follow the light, or equal ones, and what is left of its budget.
+//!
+//! The same scene, elements and part of the light make the same mesh, whatever else is asked for, so that solutions can be merged and compared; but
+//! for few rays, of which finding it takes a quarter, and little time, in which elements are equal.
+
+use super::{Effort, Followed, follow_light};
+use crate::mesh::{ElementMesh, Resolution};
+use crate::run::run;
+use crate::scene::Scene;
+use crate::solvers::Progress;
+use crate::solvers::budget::{self, RAYS_PER_ELEMENT};
+use crate::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
+use crate::{Error, Problem, Solution};
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// Seed of what finds the mesh: it does not depend on that of the solve, so that solves of several seeds can be merged.
+const SEED: u64 = 0x6d65_7368;
+/// Share of the time that the pilot may take; all of the mesh takes some four times as long.
+const PATIENCE: f64 = 0.04;
+
+/// How elements are spread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spread {
+    /// Small where the light changes.
+    Adaptive,
+    /// Equal, as far as triangles let them.
+    #[default]
+    Uniform,
+}
+
+impl Spread {
+    pub const ALL: [Spread; 2] = [Spread::Adaptive, Spread::Uniform];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Spread::Adaptive => "adaptive",
+            Spread::Uniform => "uniform",
+        }
+    }
+}
+
+/// What a solve is asked for, as far as its mesh is concerned.
+#[derive(Clone, Copy, Debug)]
+pub struct Wish {
+    pub resolution: Resolution,
+    pub spread: Spread,
+    pub budget: Budget,
+    /// Of the whole solve, if it is limited.
+    pub time: Option<Duration>,
+    pub light: LightPart,
+}
+
+/// A scene that is cut into elements, and what is left of the budget.
+pub struct Meshed {
+    pub problem: Problem,
+    pub budget: Budget,
+    /// Time that it took to find an adaptive one.
+    pub took: Duration,
+    /// Whether elements are equal because the time is too short for others.
+    pub was_short: bool,
+}
+
+impl Wish {
+    /// Cuts `scene`. What `check` refuses is refused before the first ray; `watch` ends what finds the mesh, and elements are equal then.
+    ///
+    /// # Errors
+    /// Those of [`Problem::new`], of [`follow_light`] and of `check`; [`Error::Parameter`] for a longest edge of adaptive elements.
+    pub fn cut<E: From<Error>>(
+        self,
+        scene: Scene,
+        check: impl Fn(&Problem) -> Result<(), E>,
+        mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Meshed, E> {
+        let Some(elements) = self.adaptive_elements(&scene)? else {
+            let problem = Problem::new(scene, self.resolution)?;
+            return Ok(Meshed { problem, budget: self.budget, took: Duration::ZERO, was_short: false });
+        };
+        // As many rays as equal elements would get.
+        let budget = match self.budget {
+            Budget::Heuristic => Budget::Rays(budget::rays(&ElementMesh::new(&scene, self.resolution)?)),
+            budget => budget,
+        };
+        let enough = RAYS_PER_ELEMENT.saturating_mul(elements);
+        let rays = most_rays(budget).filter(|&rays| rays < enough / 2).unwrap_or(enough);
+        let effort = Effort { rays, seed: SEED, light: self.light };
+        let (start, mut was_short) = (Instant::now(), false);
+        let Followed { problem, rays } = follow_light(scene, elements, effort, |problem, settings| {
+            check(problem)?;
+            let is_late = |start: Instant| self.time.is_some_and(|time| start.elapsed() > time.mul_f64(PATIENCE));
+            let solution = solve(problem, settings, |progress| {
+                was_short |= is_late(start);
+                if was_short { ControlFlow::Break(()) } else { watch(progress) }
+            })?;
+            Ok::<_, E>(Some(solution).filter(|_| !was_short))
+        })?;
+        Ok(Meshed { problem, budget: taken_off(budget, rays), took: start.elapsed(), was_short })
+    }
+
+    /// How many adaptive elements there shall be; `None` if they shall be equal.
+    fn adaptive_elements(&self, scene: &Scene) -> Result<Option<u64>, Error> {
+        match (self.spread, self.resolution) {
+            (Spread::Uniform, _) => Ok(None),
+            (Spread::Adaptive, Resolution::MaxEdge(_)) => Err(Error::Parameter {
+                name: "mesh",
+                value: "adaptive".into(),
+                allowed: "a longest edge makes equal elements; ask for a number of elements, or for a uniform mesh",
+            }),
+            (Spread::Adaptive, resolution) => Ok(resolution.most(scene)),
+        }
+    }
+}
+
+fn solve(
+    problem: &Problem,
+    settings: Settings,
+    mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<Solution, Error> {
+    Ok(run(&mut MonteCarlo::new(problem, settings)?, problem, |progress| watch(progress)))
+}
+
+/// Rays that `budget` allows, if it says so.
+fn most_rays(budget: Budget) -> Option<u64> {
+    match budget {
+        Budget::Rays(rays) => Some(rays),
+        Budget::Accuracy { most_rays, .. } => most_rays,
+        Budget::Heuristic | Budget::Endless => None,
+    }
+}
+
+/// What is left of `budget` after so many `rays`, half of it at least.
+fn taken_off(budget: Budget, rays: u64) -> Budget {
+    let left = |all: u64| all - rays.min(all / 2);
+    match budget {
+        Budget::Rays(rays) => Budget::Rays(left(rays)),
+        Budget::Accuracy { accuracy, most_rays } => Budget::Accuracy { accuracy, most_rays: most_rays.map(left) },
+        Budget::Heuristic | Budget::Endless => budget,
+    }
+}
