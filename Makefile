@@ -12,7 +12,7 @@
 #   make growth                   time to a fixed accuracy from 10^4 to 10^6 elements, in two rooms
 #   make study-methods            all methods on one scene, error and time
 #   make study-clusters           what elements of many triangles are worth, in two rooms
-#   make study-smoothing          what taking noise out gains, and its bias, in three rooms
+#   make study-smoothing          what taking noise out gains, and its bias, in four rooms
 #   make study-mesh               what a mesh that follows the light gains, in three rooms
 
 ISOLUX = target/release/isolux

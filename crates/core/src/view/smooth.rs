@@ -7,7 +7,8 @@
 //! three times, each reaching one ring of elements further, with the shares s of [`super::neighbours`] and Tukey's biweight g, which
 //! is Black et al.'s robust anisotropic diffusion (IEEE Trans. Image Processing 1998) with the variance V of the noise in place of
 //! a contrast to be set. What stands out of the noise, a shadow's edge, stays; what does not could not have been told from noise. All
-//! light is evened out together, direct and reflected. Each pass makes V smaller, `V_i' = Σ w² V`, and so protects more.
+//! light is evened out together, direct and reflected. Each pass makes V smaller, `V_i' = Σ w² V`, and so protects more. T falls from
+//! pass to pass: the first takes the rare large errors away, and the last ones, when little noise is left, keep the shape of the light.
 //!
 //! Exchanges are symmetric, so the flux on every object is kept, to rounding. Biased: curved light becomes flatter by part of
 //! its noise; even light and straight gradients, inside a surface, do not change. Linear in the elements, 250 bytes each, same bits for
@@ -20,10 +21,9 @@ use crate::math::Rgb;
 use crate::{Problem, Solution};
 use rayon::prelude::*;
 
-/// A pass reaches one ring of elements further. More take little noise away, and more of the light's shape.
-const PASSES: usize = 3;
-/// T: differences beyond so many combined standard errors are left alone, half as large ones for the most part evened out.
-const SIGNIFICANT: f32 = 3.5;
+/// T in each pass: differences beyond so many combined standard errors are left alone, half as large ones for the most part evened out.
+/// A pass reaches one ring of elements further; more than three take little noise away, and more of the light's shape.
+const SIGNIFICANT: [f32; 3] = [5.0, 3.0, 2.4];
 /// The parameter of a solution that says that noise was taken out.
 pub const SMOOTHED: &str = "smoothed";
 
@@ -50,8 +50,8 @@ pub(super) fn of_open_parts(problem: &Problem, solution: &Solution, vertices: &V
     let weight: Vec<f32> = (0..).zip(open).map(|(e, open)| problem.mesh.area(e) * open).collect();
     let neighbours = Neighbours::new(problem, vertices, &weight);
     let mut estimate = Estimate { value, variance: pooled(&neighbours, &std_error, &weight) };
-    for _ in 0..PASSES {
-        estimate = pass(&neighbours, &estimate);
+    for significant in SIGNIFICANT {
+        estimate = pass(&neighbours, &estimate, significant);
     }
     estimate.value
 }
@@ -100,12 +100,12 @@ fn pooled(neighbours: &Neighbours, std_error: &[Rgb], weight: &[f32]) -> Vec<Rgb
     (0..std_error.len()).into_par_iter().map(pool).collect()
 }
 
-fn pass(neighbours: &Neighbours, old: &Estimate) -> Estimate {
+fn pass(neighbours: &Neighbours, old: &Estimate, significant: f32) -> Estimate {
     let even_out = |e: usize| {
         let (mut gain, mut variance, mut own) = (Rgb::BLACK, Rgb::BLACK, 1.0);
         for (n, share) in neighbours.of(e) {
             let difference = old.value[n] - old.value[e];
-            let w = share * likeness(difference, old.variance[n] + old.variance[e]);
+            let w = share * likeness(difference, old.variance[n] + old.variance[e], significant);
             gain += difference * w;
             variance += old.variance[n] * (w * w);
             own -= w;
@@ -116,9 +116,9 @@ fn pass(neighbours: &Neighbours, old: &Estimate) -> Estimate {
     Estimate { value, variance }
 }
 
-/// `g`: 1 for equal values, 0 for a difference that noise of `variance` does not explain in some channel.
-fn likeness(difference: Rgb, variance: Rgb) -> f32 {
-    let surprise = |d: f32, v: f32| if d == 0.0 { 0.0 } else { d * d / (SIGNIFICANT * SIGNIFICANT * v) };
+/// `g`: 1 for equal values, 0 for a difference of `significant` standard errors of noise of `variance` in some channel.
+fn likeness(difference: Rgb, variance: Rgb, significant: f32) -> f32 {
+    let surprise = |d: f32, v: f32| if d == 0.0 { 0.0 } else { d * d / (significant * significant * v) };
     let [r, g, b] = [difference.r, difference.g, difference.b];
     let u = surprise(r, variance.r).max(surprise(g, variance.g)).max(surprise(b, variance.b));
     (1.0 - u).max(0.0).powi(2)

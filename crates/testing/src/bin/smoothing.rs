@@ -35,9 +35,12 @@ fn main() -> Result<()> {
     let rays = if asked.is_empty() { RAYS.to_vec() } else { asked };
     measure("cornell-box", builtin("cornell-box")?, 200_000, &rays)?;
     measure("office", builtin("office")?, 200_000, &rays)?;
-    if let Some(folder) = scenes_folder() {
-        let room = isolux_io::import::read_scene(&folder.join("living-room.glb"), &Default::default())?;
-        measure("living room", room, 400_000, &rays)?;
+    let folder = scenes_folder();
+    for (name, file) in [("living room", "living-room.glb"), ("classroom", "classroom.glb")] {
+        if let Some(folder) = &folder {
+            let room = isolux_io::import::read_scene(&folder.join(file), &Default::default())?;
+            measure(name, room, 400_000, &rays)?;
+        }
     }
     Ok(())
 }

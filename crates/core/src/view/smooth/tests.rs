@@ -71,7 +71,7 @@ fn large_and_small_elements_exchange_flux_not_irradiance() {
     let area = |e: u32| problem.mesh.area(e);
     let change = |weight: Vec<f32>| {
         let old = Estimate { value: value.clone(), variance: vec![Rgb::WHITE; value.len()] };
-        let new = pass(&Neighbours::new(&problem, &vertices, &weight), &old);
+        let new = pass(&Neighbours::new(&problem, &vertices, &weight), &old, SIGNIFICANT[0]);
         let flux = |x: &[Rgb]| problem.mesh.elements().map(|e| f64::from(area(e) * x[e as usize].g)).sum::<f64>();
         (flux(&new.value) / flux(&value) - 1.0).abs()
     };
@@ -92,6 +92,21 @@ fn noise_in_even_light_falls_as_many_neighbours_let_expect() {
     let guided = left(1.0);
     assert!(guided < 0.1, "{guided}");
     assert!(left(0.1) > 0.5, "what is believed to be true is left");
+}
+
+/// One element is off by 3.46 combined standard errors: the first pass takes it for noise, and, the planted fault, at 3.5 it would not.
+#[test]
+fn a_rare_large_error_is_evened_out() {
+    let problem = square(16, 1);
+    let inner = |e: &u32| centre(&problem, *e).truncate().distance(Vec2::splat(0.5)) < 0.1;
+    let off = problem.mesh.elements().find(inner).unwrap();
+    let before = light(&problem, |e| if e == off { 14.9 } else { 10.0 }, |_| 1.0);
+    let after = smooth(&problem, &before).irradiance[off as usize].g;
+    assert!((13.0..14.0).contains(&after), "{after}");
+    let weight: Vec<f32> = problem.mesh.elements().map(|e| problem.mesh.area(e)).collect();
+    let old = Estimate { value: before.irradiance, variance: vec![Rgb::WHITE; weight.len()] };
+    let careful = pass(&Neighbours::new(&problem, &Vertices::new(&problem), &weight), &old, 3.5);
+    assert!(careful.value[off as usize].g > 14.8);
 }
 
 #[test]
