@@ -47,7 +47,7 @@ def solve(
         elements: pieces of surface that get one value each, about so many; 400,000 unless said otherwise (2000 for deterministic methods).
             Small triangles of smooth surfaces are put together.
         max_edge: instead, the longest edge of an element [m].
-        contacts: whether surfaces are cut where others stand on them, so that no light passes below.
+        contacts: whether elements are cut where others stand on them, so that no light passes below.
         error: goes on until the error is at most this share of the mean irradiance: 0.02 is two hundredths. `rays` and `time` limit it;
             if they are too little an `AccuracyWarning` says so.
         confidence: how sure that shall be: the share of all solves that keep it.

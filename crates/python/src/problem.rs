@@ -6,7 +6,6 @@ use crate::scene::{Scene, two_dimensional};
 use crate::transport;
 use crate::view::{numbers, rows, view, view_of_triples};
 use isolux_core::mesh::Resolution;
-use isolux_core::scene::cut_at_contacts;
 use isolux_core::solvers::DETERMINISTIC_ELEMENTS;
 use isolux_core::view::{ViewOptions, elements};
 use isolux_io::export::elements as export;
@@ -55,16 +54,19 @@ impl Problem {
         Problem { inner: Arc::new(inner), known: OnceLock::new() }
     }
 
-    /// Cuts `scene`, and before that its surfaces where others stand on them, if `contacts` says so.
+    /// Cuts `scene`, along what stands on its surfaces, too, if `contacts` says so.
     ///
     /// # Errors
     /// Those of the core.
     pub fn cut(py: Python, scene: &Scene, resolution: Resolution, contacts: bool) -> Result<Problem, Fail> {
         let scene = scene.inner.clone();
         let problem = to_its_end(py, || {
-            let detail = resolution.typical_edge(&scene);
-            let scene = if contacts { cut_at_contacts(scene, detail) } else { scene };
-            isolux_core::Problem::new(scene, resolution)
+            if contacts {
+                let detail = resolution.typical_edge(&scene);
+                isolux_core::Problem::cut_along_contacts(scene, resolution, detail)
+            } else {
+                isolux_core::Problem::new(scene, resolution)
+            }
         })?;
         Ok(Problem::new(problem))
     }
