@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 use isolux_core::math::Rgb;
-use isolux_core::scene::builtin::shapes::Builder;
 use isolux_core::mesh::Resolution;
+use isolux_core::scene::builtin::shapes::Builder;
 use isolux_core::scene::{Material, Scene};
 use isolux_core::solvers::monte_carlo::{METHODS, Settings};
 use isolux_core::transport::Leaving;

@@ -30,7 +30,11 @@ pub enum Division {
 
 /// The parts of a triangle that is bisected from its corner `from`, in its orientation: first the one with the corner after `from`. Both begin
 /// with `from` itself.
-pub fn bisected<T: Copy + Add<Output = T> + Mul<f32, Output = T>>(corners: [T; 3], from: u8, share: f32) -> [[T; 3]; 2] {
+pub fn bisected<T: Copy + Add<Output = T> + Mul<f32, Output = T>>(
+    corners: [T; 3],
+    from: u8,
+    share: f32,
+) -> [[T; 3]; 2] {
     let [apex, after, before] = [0, 1, 2].map(|k| corners[(usize::from(from) + k) % 3]);
     let foot = after * (1.0 - share) + before * share;
     [[apex, after, foot], [apex, foot, before]]
@@ -199,8 +203,8 @@ impl ElementMesh {
 #[cfg(test)]
 mod tests {
     use super::{Division, bisected, bisected_at, halved, halves};
-    use crate::mesh::cells;
     use crate::math::hash;
+    use crate::mesh::cells;
     use crate::mesh::{Cut, ElementMesh, Point, Resolution, TOGETHER};
     use crate::scene::Scene;
     use crate::scene::builtin::builtin;
@@ -230,7 +234,9 @@ mod tests {
         let (division, parts, below) = match (random % 3) as u8 {
             _ if random == 15 => (Division::Split(3), cells::count(3), depth.saturating_sub(4)),
             from if random < 8 => (Division::Bisected { from, share: 0.5 }, 2, depth - 1),
-            from => (Division::Bisected { from, share: (*state >> 32) as f32 / (1u64 << 33) as f32 + 0.25 }, 2, depth - 1),
+            from => {
+                (Division::Bisected { from, share: (*state >> 32) as f32 / (1u64 << 33) as f32 + 0.25 }, 2, depth - 1)
+            }
         };
         let parts: Vec<Division> = (0..parts).flat_map(|_| tree(below, state)).collect();
         [vec![division], parts].concat()
@@ -253,7 +259,10 @@ mod tests {
                 let (part, within) = bisected_at(uv, from, share);
                 let [a, b, c] = bisected(whole, from, share)[part as usize];
                 assert!((a + within.x * (b - a) + within.y * (c - a)).abs_diff_eq(uv, 1e-6), "{from} {share} {uv}");
-                assert!(within.min_element() >= -1e-5 && within.element_sum() < 1.00001, "{from} {share} {uv} {within}");
+                assert!(
+                    within.min_element() >= -1e-5 && within.element_sum() < 1.00001,
+                    "{from} {share} {uv} {within}"
+                );
                 let area = if part == 0 { share } else { 1.0 - share };
                 assert!(((b - a).perp_dot(c - a) - area).abs() < 1e-6);
             }
@@ -370,7 +379,8 @@ mod tests {
         let endlessly_beside = divisions(vec![Division::Beside(1); 1_000_000]);
         let short = divisions(cut.divisions[..cut.divisions.len() - 1].to_vec());
         let long = divisions([&cut.divisions[..], &[Division::Cells(1)]].concat());
-        let changed = |change: &dyn Fn(Division) -> Division| divisions(cut.divisions.iter().map(|d| change(*d)).collect());
+        let changed =
+            |change: &dyn Fn(Division) -> Division| divisions(cut.divisions.iter().map(|d| change(*d)).collect());
         let bisected = |wrong: Division| {
             changed(&move |division| if matches!(division, Division::Bisected { .. }) { wrong } else { division })
         };
@@ -379,9 +389,21 @@ mod tests {
         };
         let of_no_corner = bisected(Division::Bisected { from: 3, share: 0.5 });
         let shares = [0.0, 1.0, -1.0, f32::NAN].map(|share| bisected(Division::Bisected { from: 0, share }));
-        let no_edge = changed(&|division| if matches!(division, Division::Beside(_)) { Division::Beside(8) } else { division });
-        let split = changed(&|division| if matches!(division, Division::Split(_)) { Division::Split(0) } else { division });
-        let bad = [endless, endlessly_beside, short, long, of_no_corner, no_edge, split, cells(Division::Cells(0)), divisions(Vec::new())];
+        let no_edge =
+            changed(&|division| if matches!(division, Division::Beside(_)) { Division::Beside(8) } else { division });
+        let split =
+            changed(&|division| if matches!(division, Division::Split(_)) { Division::Split(0) } else { division });
+        let bad = [
+            endless,
+            endlessly_beside,
+            short,
+            long,
+            of_no_corner,
+            no_edge,
+            split,
+            cells(Division::Cells(0)),
+            divisions(Vec::new()),
+        ];
         for bad in bad.into_iter().chain(shares) {
             assert!(ElementMesh::with_cut(&scene, &bad).unwrap_err().to_string().contains("cut"));
         }

@@ -5,7 +5,7 @@
 //! nothing stands: at the free end of a wall both its sides meet again. Cost: a look at the patches with such edges.
 
 use super::grid::{self, Grid, Side};
-use super::vertices::group_by;
+use super::vertices::{Vertices, group_by};
 use crate::Problem;
 use crate::mesh::ElementMesh;
 use glam::Vec3;
@@ -27,17 +27,32 @@ pub fn divide_along(mesh: &ElementMesh, patch: u32, [p, q]: [[u32; 2]; 2]) -> bo
     (0..3).any(|k| beside[k] && is_on(k, p, m) && is_on(k, q, m))
 }
 
+/// Whether something stands at each vertex.
+pub fn at_foot(problem: &Problem, vertices: &Vertices) -> Vec<bool> {
+    let mut at_foot = vec![false; vertices.len()];
+    for side in vertices.grid.sides(&problem.mesh) {
+        for point in foot(&problem.mesh, side.patch) {
+            at_foot[vertices.of_grid_point(vertices.grid.number(&problem.mesh, side, point)) as usize] = true;
+        }
+    }
+    at_foot
+}
+
+/// The grid points of `patch` on edges on which something stands.
+fn foot(mesh: &ElementMesh, patch: u32) -> impl Iterator<Item = [u32; 2]> {
+    let (beside, m) = (mesh.beside(patch), mesh.divisions(patch));
+    let all = (beside != [false; 3]).then(|| grid::points(m)).into_iter().flatten();
+    all.filter(move |&point| (0..3).any(|k| beside[k] && is_on(k, point, m)))
+}
+
 /// Gives grid points at the same place vertices of their own, where something stands between them. `places` are those of all grid
 /// points, `place_of_vertex` gets those of new vertices.
 pub fn divide(problem: &Problem, grid: &Grid, places: &[u32], vertex: &mut [u32], place_of_vertex: &mut Vec<u32>) {
     let mesh = &problem.mesh;
     let mut is_divided = vec![false; places.iter().max().map_or(0, |last| *last as usize + 1)];
     for side in grid.sides(mesh) {
-        let (beside, m) = (mesh.beside(side.patch), mesh.divisions(side.patch));
-        if beside != [false; 3] {
-            let on_foot = grid::points(m).filter(|&point| (0..3).any(|k| beside[k] && is_on(k, point, m)));
-            on_foot.for_each(|point| is_divided[places[grid.number(mesh, side, point)] as usize] = true);
-        }
+        let foot = foot(mesh, side.patch);
+        foot.for_each(|point| is_divided[places[grid.number(mesh, side, point)] as usize] = true);
     }
     if !is_divided.contains(&true) {
         return;

@@ -27,6 +27,8 @@ pub struct TVertex {
 pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
     let sides = vertices.grid.sides(&problem.mesh);
     let is_open = |side: Side, ends| !contacts::divide_along(&problem.mesh, side.patch, ends);
+    // What stands there may be thinner than the tolerance, with an edge of the other side beside it.
+    let at_foot = contacts::at_foot(problem, vertices);
     let pieces = loose_pieces(problem, vertices, sides, is_open, |vertex| vertex);
     let mut found: Vec<(f32, TVertex)> = Vec::new();
     visit_crossings(
@@ -34,7 +36,7 @@ pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
         &pieces,
         |v| vertices.position(v),
         |piece, end, t| {
-            if end.normal.dot(piece.normal) > CREASE_ANGLE.cos() {
+            if !at_foot[end.key as usize] && end.normal.dot(piece.normal) > CREASE_ANGLE.cos() {
                 found.push((piece.length, TVertex { vertex: end.key, from: piece.from, to: piece.to, t }));
             }
         },

@@ -1,7 +1,7 @@
 //! The vertices of the lit surface: grid points that are the same place on the same smooth surface, made one.
 
-use super::{contacts, crease};
 use super::grid::{self, Grid};
+use super::{contacts, crease};
 use crate::Problem;
 use crate::math::weld::{self, Weld};
 use crate::mesh::Place;

@@ -34,7 +34,9 @@ impl<I: Iterator<Item = Division>> Knife<'_, I> {
             Some(Division::Cells(m)) => self.split(patch, m, segments, depth),
             Some(Division::Bisected { from, share }) => {
                 self.cut.push(Division::Bisected { from, share });
-                parts(patch, from, share).into_iter().for_each(|part| self.walk(part, &self.on(part, segments), depth + 1));
+                parts(patch, from, share)
+                    .into_iter()
+                    .for_each(|part| self.walk(part, &self.on(part, segments), depth + 1));
             }
             Some(Division::Split(m)) => {
                 self.cut.push(Division::Split(m));
@@ -122,7 +124,11 @@ impl<I: Iterator<Item = Division>> Knife<'_, I> {
         let along = |k: usize| -> Vec<Segment> {
             segments.iter().copied().filter(|segment| patch.edge_along(*segment, self.near) == Some(k)).collect()
         };
-        if segments.is_empty() { [false; 3] } else { [0, 1, 2].map(|k| patch.is_covered(k, &along(k), 2.0 * self.near)) }
+        if segments.is_empty() {
+            [false; 3]
+        } else {
+            [0, 1, 2].map(|k| patch.is_covered(k, &along(k), 2.0 * self.near))
+        }
     }
 
     /// Whether edge `k` of `patch` lies on one of the triangle's own on which something stands.
@@ -173,7 +179,8 @@ impl<I: Iterator<Item = Division>> Knife<'_, I> {
             let [a, b] = element.edge((from + 1) % 3);
             let way = end - element.0[from];
             let share = (a - element.0[from]).perp_dot(way) / way.perp_dot(b - a);
-            let quality = parts(element, from as u8, share as f32).map(|part| part.quality()).into_iter().fold(1.0, f64::min);
+            let quality =
+                parts(element, from as u8, share as f32).map(|part| part.quality()).into_iter().fold(1.0, f64::min);
             ((from as u8, share as f32), quality)
         };
         let is_one = |&((from, share), _): &((u8, f32), f64)| {

@@ -59,7 +59,8 @@ impl Resolution {
     /// Those of [`Resolution::cut`].
     pub fn most_before(self, scene: &Scene, contacts: &Contacts) -> Result<Option<u64>, Error> {
         let whole = self.cut(scene)?;
-        let (before, after) = (whole.element_count(scene)?, whole.along(scene, contacts, u64::MAX).element_count(scene)?);
+        let (before, after) =
+            (whole.element_count(scene)?, whole.along(scene, contacts, u64::MAX).element_count(scene)?);
         Ok(self.most(scene).map(|most| (most as f64 * before as f64 / after as f64) as u64))
     }
 }
@@ -86,7 +87,8 @@ impl Cut {
                 return None;
             }
             let before = &self.divisions[first[t]..first[t + 1]];
-            let mut knife = Knife { touched, near: 4.0 * contacts.tolerance, from: before.iter().copied(), cut: Vec::new() };
+            let mut knife =
+                Knife { touched, near: 4.0 * contacts.tolerance, from: before.iter().copied(), cut: Vec::new() };
             let [a, b, c] = touched.plane.whole.0;
             let on_plane = |uv: Vec2| a + f64::from(uv.x) * (b - a) + f64::from(uv.y) * (c - a);
             for patch in 0..self.slices[t].patch_count() {
@@ -135,7 +137,6 @@ fn elements(divisions: &[Division]) -> u64 {
     };
     divisions.iter().map(of_leaf).sum()
 }
-
 
 #[cfg(test)]
 mod tests;

@@ -43,7 +43,9 @@ fn corners(scene: &Scene, mesh: &ElementMesh) -> Vec<(u32, [DVec3; 3])> {
 fn crossed(scene: &Scene, cut: &Cut, contacts: &Contacts) -> usize {
     let mesh = ElementMesh::with_cut(scene, cut).unwrap();
     let is_crossed = |(triangle, corners): &(u32, [DVec3; 3])| {
-        let Some(touched) = contacts.triangles.iter().find(|touched| touched.triangle == *triangle) else { return false };
+        let Some(touched) = contacts.triangles.iter().find(|touched| touched.triangle == *triangle) else {
+            return false;
+        };
         let [a, b, c] = corners.map(|corner| touched.plane.flat(corner));
         let inside = |p: DVec2| {
             let off = |from: DVec2, to: DVec2| (to - from).normalize().perp_dot(p - from);
@@ -58,7 +60,7 @@ fn crossed(scene: &Scene, cut: &Cut, contacts: &Contacts) -> usize {
 fn every_element_lies_on_one_side_of_all_contacts() {
     let scene = furnished();
     let contacts = Contacts::of(&scene, DETAIL);
-    for resolution in [Resolution::Elements(500), Resolution::Elements(4000), Resolution::MaxEdge(0.03)] {
+    for resolution in [Resolution::Elements(2000), Resolution::Elements(10_000), Resolution::MaxEdge(0.03)] {
         let whole = resolution.cut(&scene).unwrap();
         assert!(crossed(&scene, &whole, &contacts) > 30, "{resolution:?}");
         assert_eq!(crossed(&scene, &resolution.cut_along(&scene, &contacts).unwrap(), &contacts), 0, "{resolution:?}");

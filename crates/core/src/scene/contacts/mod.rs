@@ -51,7 +51,8 @@ impl Contacts {
         let detail = f64::from(detail);
         let near = Near::new(scene, tolerance as f32);
         let of_triangle = |triangle: u32| {
-            let plane = Plane::new(scene.corners(triangle)).filter(|plane| plane.whole.longest_edge() >= 2.0 * detail)?;
+            let plane =
+                Plane::new(scene.corners(triangle)).filter(|plane| plane.whole.longest_edge() >= 2.0 * detail)?;
             let (inner, borders) = segments::of_triangle(scene, triangle, &plane, &near, tolerance, detail);
             (!inner.is_empty() || borders.contains(&true)).then_some(Touched { triangle, plane, inner, borders })
         };
