@@ -2,7 +2,7 @@
 //!
 //! A T-vertex of one side lies between two vertices of the other. Values are interpolated linearly between vertices, so it
 //! would bend the light along the edge on its own side only, which shows as a seam across a flat wall. So it takes the
-//! value that the piece of edge has where it lies ([`t_vertices`]), the longest if there are several. And a program that draws triangles leaves pinholes
+//! value that the piece of edge has where it lies ([`t_vertices`]), the longest if there are several, unless something stands at it. And a program that draws triangles leaves pinholes
 //! along such an edge, whatever the angle, unless both sides have the same vertices there ([`EdgePoints`]).
 
 use super::contacts;

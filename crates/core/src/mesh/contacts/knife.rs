@@ -146,7 +146,7 @@ impl<I: Iterator<Item = Division>> Knife<'_, I> {
         let to_cut: Vec<Segment> =
             segments.iter().copied().filter(|segment| is_along(segment).is_none_or(|k| !covered[k])).collect();
         let through = to_cut.iter().filter(|segment| is_along(segment).is_none());
-        let from_corner = through.clone().find_map(|&segment| self.from_corner(element, segment));
+        let out_of_corner = through.clone().find_map(|&segment| self.out_of_corner(element, segment));
         let length = |segment: &&Segment| segment[0].distance(segment[1]);
         let across = || {
             let crossing = through.clone().filter_map(|segment| Some((segment, self.across(element, *segment)?)));
@@ -155,11 +155,11 @@ impl<I: Iterator<Item = Division>> Knife<'_, I> {
         let ends = to_cut.iter().flat_map(|&segment| segment.map(|end| (end, is_along(&segment))));
         let through_ends = ends.filter_map(|(end, edge)| self.through_end(element, end, edge));
         let through_end = || through_ends.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(bisection, _)| bisection);
-        from_corner.or_else(across).or_else(through_end)
+        out_of_corner.or_else(across).or_else(through_end)
     }
 
     /// The bisection along a segment that runs from a corner to the edge opposite.
-    fn from_corner(&self, element: Flat, [p, q]: Segment) -> Option<(u8, f32)> {
+    fn out_of_corner(&self, element: Flat, [p, q]: Segment) -> Option<(u8, f32)> {
         let ends = [(p, q), (q, p)].into_iter();
         ends.flat_map(|ends| (0..3).map(move |k| (ends, k))).find_map(|((p, q), k)| {
             let is_it = p.distance(element.0[k]) <= self.near && self.is_between(element, (k + 1) % 3, q);
