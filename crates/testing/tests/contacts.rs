@@ -48,7 +48,7 @@ fn cut(scene: &Scene, elements: u64, is_asked: bool) -> Problem {
     } else {
         Problem::new(scene.clone(), resolution)
     };
-    made.unwrap()
+    made.expect("a room that can be cut")
 }
 
 /// Mean irradiance of the elements of `object` that all lie where `keep` says, by their corners and whether they are on the back.
