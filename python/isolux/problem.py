@@ -31,7 +31,7 @@ class Problem:
         scene: a `Scene`, or what `isolux.load` takes.
         elements: how many to aim at, never fewer than one for each side of a triangle; 2000 unless said otherwise.
         max_edge: instead, the longest edge of an element [m].
-        contacts: whether surfaces are cut where others stand on them, so that no light passes below.
+        contacts: whether elements are cut where others stand on them, so that no light passes below.
 
     Raises:
         EmptyScene, TooManyElements, ParameterError: there is nothing to cut, or no such cut.

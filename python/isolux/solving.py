@@ -49,7 +49,7 @@ def solve(
             Small triangles of smooth surfaces are put together.
         max_edge: instead, the longest edge of an element [m].
         mesh: "adaptive" elements are small where the light changes, "uniform" ones equal, which they are unless said otherwise, and for little time.
-        contacts: whether surfaces are cut where others stand on them, so that no light passes below.
+        contacts: whether elements are cut where others stand on them, so that no light passes below.
         error: goes on until the error is at most this share of the mean irradiance: 0.02 is two hundredths. `rays` and `time` limit it;
             if they are too little an `AccuracyWarning` says so.
         confidence: how sure that shall be: the share of all solves that keep it.

@@ -12,12 +12,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// What a checkpoint decides: these options cannot be chosen again.
-const DECIDED: [&str; 12] = [
+const DECIDED: [&str; 11] = [
     "scene",
     "UnitArguments",
     "elements",
     "max_edge",
-    "contacts",
     "MeshArguments",
     "seed",
     "replicates",

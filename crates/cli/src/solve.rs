@@ -18,15 +18,11 @@ use crate::summary::Summary;
 use crate::{input, terminal};
 use isolux_core::Problem;
 use isolux_core::adaptive::{Meshed, Wish};
-use isolux_core::scene::cut_at_contacts;
 use isolux_core::solvers::Progress;
 use isolux_core::solvers::monte_carlo::Budget;
 use isolux_io::checkpoint_file::{Checkpoint, Clock};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-
-/// Contacts that are shorter than this share of an element's edge are ignored.
-const DETAIL: f32 = 1.0;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -91,11 +87,6 @@ pub struct Solve {
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     max_edge: Option<f32>,
 
-    /// Where something stands on a surface, or passes through it: ignore that, or cut the surface there. Cut, no light passes below, exactly;
-    /// ignored, up to some hundredths of it do, but the elements are more regular, and pictures smoother
-    #[arg(long, value_name = "WHAT", default_value = "ignore")]
-    contacts: Contacts,
-
     #[command(flatten)]
     mesh: MeshArguments,
 
@@ -136,13 +127,6 @@ pub struct Solve {
 
     #[command(flatten, next_help_heading = "Report")]
     progress: ProgressArguments,
-}
-
-/// What is done where surfaces meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Contacts {
-    Cut,
-    Ignore,
 }
 
 fn parse_objects(text: &str) -> Result<usize, String> {
@@ -248,11 +232,15 @@ impl Solve {
         self.picture.check_camera(&scene)?;
         let budget = self.budget.budget(&scene)?.unwrap_or(Budget::Heuristic);
         let resolution = chosen.resolution(self.elements, self.max_edge);
-        let detail = DETAIL * resolution.typical_edge(&scene);
-        let scene = if self.contacts == Contacts::Cut { cut_at_contacts(scene, detail) } else { scene };
         let check = |problem: &Problem| self.solver.solver(&chosen, problem, budget).map(drop);
-        let spread = self.mesh.spread();
-        let wish = Wish { resolution, spread, budget, time: self.budget.time, light: self.solver.light() };
+        let wish = Wish {
+            resolution,
+            spread: self.mesh.spread(),
+            along_contacts: self.mesh.along_contacts(),
+            budget,
+            time: self.budget.time,
+            light: self.solver.light(),
+        };
         let Meshed { problem, budget, took, .. } = mesh::cut(wish, scene, display, check)?;
         let solver = self.solver.solver(&chosen, &problem, budget)?;
         Ok(Checkpoint { problem, solver, clock: Clock { solved: took, limit: self.budget.time } })

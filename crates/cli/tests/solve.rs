@@ -169,12 +169,17 @@ fn a_solve_ends_when_it_is_as_accurate_as_was_asked_for() {
 }
 
 #[test]
-fn surfaces_are_cut_where_others_stand_on_them_if_that_is_asked_for() {
+fn elements_are_cut_where_others_stand_on_them_if_that_is_asked_for() {
     let folder = Folder::new();
-    let triangles = |arguments: &[&str]| {
-        let all = ["solve", "cornell-box", "--elements", "2000", "--rays", "30k", "--json"];
-        folder.json(&with(&all, arguments))["triangles"].as_u64().unwrap()
+    // Equal elements have few areas.
+    let areas = |arguments: &[&str]| {
+        let all = ["solve", "cornell-box", "--elements", "2000", "--rays", "30k", "--json", "-o", "lit.csv"];
+        assert!(folder.json(&with(&all, arguments))["elements"].as_u64().unwrap() <= 2000);
+        let table = String::from_utf8(folder.read("lit.csv")).unwrap();
+        let area = |line: &str| line.split(',').nth(10).unwrap().to_owned();
+        table.lines().filter(|line| !line.starts_with('#')).map(area).collect::<std::collections::BTreeSet<_>>().len()
     };
-    assert_eq!(triangles(&[]), 38);
-    assert!(triangles(&["--contacts", "cut"]) > 50);
+    let equal = areas(&["--contacts", "ignore"]);
+    assert!(areas(&["--contacts", "cut"]) > 3 * equal, "{equal}");
+    areas(&["--contacts", "cut", "--mesh", "adaptive"]);
 }

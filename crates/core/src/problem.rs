@@ -4,7 +4,7 @@ use crate::Error;
 use crate::geometry::{self, Geometry};
 use crate::math::Rgb;
 use crate::mesh::{Cut, ElementMesh, Resolution};
-use crate::scene::{Emitter, LightGroup, Scene};
+use crate::scene::{Contacts, Emitter, LightGroup, Scene};
 use std::sync::Arc;
 
 /// A scene, cut into elements, ready to be traced. Clones share the geometry.
@@ -24,6 +24,15 @@ impl Problem {
         let mesh = ElementMesh::new(&scene, resolution)?;
         let geometry = geometry::for_scene(&scene);
         Ok(Problem { scene, mesh, geometry })
+    }
+
+    /// Cuts `scene` as `resolution` asks, and along [`Contacts`] that are longer than `detail` [m].
+    ///
+    /// # Errors
+    /// Those of [`ElementMesh::new`].
+    pub fn cut_along_contacts(scene: Scene, resolution: Resolution, detail: f32) -> Result<Problem, Error> {
+        let cut = resolution.cut_along(&scene, &Contacts::of(&scene, detail))?;
+        Problem::with_cut(scene, &cut)
     }
 
     /// The same cut a solution was computed with, see [`ElementMesh::with_cut`].

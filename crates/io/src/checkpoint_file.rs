@@ -16,7 +16,7 @@ use isolux_core::scene::Scene;
 use isolux_core::solvers::Solver;
 use std::time::Duration;
 
-const FILE: Container = Container { magic: b"ISOCHK", version: 4, what: "a checkpoint of isolux", packing: 0 };
+const FILE: Container = Container { magic: b"ISOCHK", version: 5, what: "a checkpoint of isolux", packing: 0 };
 
 /// How long a run has solved, and how long it may in all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

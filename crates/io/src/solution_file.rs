@@ -14,7 +14,7 @@ use isolux_core::solution::GroupLight;
 use isolux_core::{Problem, Solution};
 use std::borrow::Cow;
 
-const FILE: Container = Container { magic: b"ISOLUX", version: 6, what: "an isolux file", packing: 1 };
+const FILE: Container = Container { magic: b"ISOLUX", version: 7, what: "an isolux file", packing: 1 };
 
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Payload<'a> {

@@ -6,7 +6,6 @@ use crate::scene::{Scene, two_dimensional};
 use crate::transport;
 use crate::view::{numbers, rows, view, view_of_triples};
 use isolux_core::mesh::Resolution;
-use isolux_core::scene::cut_at_contacts;
 use isolux_core::solvers::DETERMINISTIC_ELEMENTS;
 use isolux_core::view::{ViewOptions, elements};
 use isolux_io::export::elements as export;
@@ -55,29 +54,26 @@ impl Problem {
         Problem { inner: Arc::new(inner), known: OnceLock::new() }
     }
 
-    /// Cuts `scene`, and before that its surfaces where others stand on them, if `contacts` says so.
+    /// Cuts `scene`, along what stands on its surfaces, too, if `contacts` says so.
     ///
     /// # Errors
     /// Those of the core.
     pub fn cut(py: Python, scene: &Scene, resolution: Resolution, contacts: bool) -> Result<Problem, Fail> {
         let scene = scene.inner.clone();
-        let problem = to_its_end(py, || isolux_core::Problem::new(cut_scene(scene, resolution, contacts), resolution))?;
+        let problem = to_its_end(py, || {
+            if contacts {
+                let detail = resolution.typical_edge(&scene);
+                isolux_core::Problem::cut_along_contacts(scene, resolution, detail)
+            } else {
+                isolux_core::Problem::new(scene, resolution)
+            }
+        })?;
         Ok(Problem::new(problem))
     }
 
     fn known(&self) -> &Known {
         self.known.get_or_init(|| Known::of(&self.inner))
     }
-}
-
-/// `scene`, its surfaces cut where others stand on them, if `contacts` says so.
-pub fn cut_scene(
-    scene: isolux_core::scene::Scene,
-    resolution: Resolution,
-    contacts: bool,
-) -> isolux_core::scene::Scene {
-    let detail = resolution.typical_edge(&scene);
-    if contacts { cut_at_contacts(scene, detail) } else { scene }
 }
 
 #[pymethods]

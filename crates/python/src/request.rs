@@ -2,7 +2,7 @@
 
 use crate::background::in_background;
 use crate::fail::Fail;
-use crate::problem::{Problem, cut_scene};
+use crate::problem::Problem;
 use crate::scene::Scene;
 use crate::solve::Limits;
 use isolux_core::Error;
@@ -121,16 +121,15 @@ impl Request {
         let budget = limits.budget(&scene, self)?;
         let spread = named("mesh", cut.mesh, &Spread::ALL, Spread::name)?.unwrap_or_default();
         let resolution = self.chosen.resolution(cut.elements, cut.max_edge);
-        let wish = Wish { resolution, spread, budget, time: limits.duration()?, light: self.light };
+        let (along_contacts, time, light) = (cut.contacts, limits.duration()?, self.light);
+        let wish = Wish { resolution, spread, along_contacts, budget, time, light };
         let is_interrupted = AtomicBool::new(false);
         let look = || py.check_signals().inspect_err(|_| is_interrupted.store(true, Ordering::Relaxed));
         let work = || -> Result<Meshed, Error> {
             let check = |problem: &isolux_core::Problem| self.chosen.solver(problem, budget, None).map(drop);
-            wish.cut(cut_scene(scene, resolution, cut.contacts), check, |_| {
-                match is_interrupted.load(Ordering::Relaxed) {
-                    true => ControlFlow::Break(()),
-                    false => ControlFlow::Continue(()),
-                }
+            wish.cut(scene, check, |_| match is_interrupted.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
             })
         };
         let Meshed { problem, budget, took, .. } = in_background(py, threads, look, work)??;

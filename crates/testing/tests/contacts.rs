@@ -2,14 +2,14 @@
 
 use glam::Vec3;
 use isolux_core::math::Rgb;
+use isolux_core::mesh::Resolution;
 use isolux_core::scene::builtin::shapes::Builder;
-use isolux_core::scene::{Material, Scene, cut_at_contacts};
+use isolux_core::scene::{Material, Scene};
 use isolux_core::solvers::monte_carlo::{METHODS, Settings};
 use isolux_core::transport::Leaving;
 use isolux_core::view::VertexField;
 use isolux_core::{Problem, Solution};
 use isolux_testing::ensemble::{solve, with_rays};
-use isolux_testing::scenes::cut;
 
 const DETAIL: f32 = 0.03;
 
@@ -40,6 +40,17 @@ fn boxed(low: f32, has_bottom: bool) -> Scene {
     })
 }
 
+/// `scene` in about `elements` elements, cut along contacts if that `is_asked`.
+fn cut(scene: &Scene, elements: u64, is_asked: bool) -> Problem {
+    let resolution = Resolution::Elements(elements);
+    let made = if is_asked {
+        Problem::cut_along_contacts(scene.clone(), resolution, DETAIL)
+    } else {
+        Problem::new(scene.clone(), resolution)
+    };
+    made.expect("a room that can be cut")
+}
+
 /// Mean irradiance of the elements of `object` that all lie where `keep` says, by their corners and whether they are on the back.
 fn mean(problem: &Problem, solution: &Solution, object: u32, keep: impl Fn(&[Vec3; 3], bool) -> bool) -> f64 {
     let corners = |e: u32| problem.mesh.corners(e).map(|uv| problem.geometry.surface(problem.mesh.triangle(e), uv).0);
@@ -61,14 +72,13 @@ fn settings() -> [Settings; 2] {
 fn a_closed_box_in_a_bright_room_is_black_inside() {
     for (low, has_bottom) in [(0.3, true), (0.0, true), (0.0, false), (-0.1, true), (-0.1, false)] {
         for settings in settings() {
-            let inside = |scene: Scene| {
-                let problem = cut(scene, 2000);
+            let inside = |is_cut: bool| {
+                let problem = cut(&boxed(low, has_bottom), 2000, is_cut);
                 let solution = solve(&problem, settings);
                 let of_side = |asked: bool| mean(&problem, &solution, 2, |_, back| back == asked);
                 of_side(true) / of_side(false)
             };
-            let (whole, cut) =
-                (inside(boxed(low, has_bottom)), inside(cut_at_contacts(boxed(low, has_bottom), DETAIL)));
+            let (whole, cut) = (inside(false), inside(true));
             assert!(cut < 1e-6, "z = {low}, bottom {has_bottom}: {cut} of the light outside");
             assert!(whole > 1e-3 || low > 0.0, "z = {low}, bottom {has_bottom}: it must leak to begin with: {whole}");
         }
@@ -82,13 +92,13 @@ fn rooms_on_both_sides_of_a_wall_without_thickness_do_not_mix() {
             builder.polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[y, z]| Vec3::new(x, y, z)));
         });
         for settings in settings() {
-            let dark = |scene: Scene| {
-                let problem = cut(scene, 2000);
+            let dark = |is_cut: bool| {
+                let problem = cut(&rooms, 2000, is_cut);
                 let solution = solve(&problem, settings);
                 let bright = mean(&problem, &solution, 0, |corners, _| corners.iter().all(|p| p.x < x + 1e-4));
                 mean(&problem, &solution, 0, |corners, _| corners.iter().all(|p| p.x > x - 1e-4)) / bright
             };
-            let (whole, cut) = (dark(rooms.clone()), dark(cut_at_contacts(rooms.clone(), DETAIL)));
+            let (whole, cut) = (dark(false), dark(true));
             assert!(cut < 1e-6, "x = {x}: {cut} of the light in the other room");
             assert!(whole > 1e-4, "x = {x}: it must leak to begin with: {whole}");
         }
@@ -97,16 +107,15 @@ fn rooms_on_both_sides_of_a_wall_without_thickness_do_not_mix() {
 
 /// In a room in which light is the same everywhere, a box stands on or is sunk into a floor, which gets none under it: elements of the floor
 /// that are neither, and vertices of the open floor that are off.
-fn fringe(scene: Scene) -> (usize, usize) {
-    let problem = cut(scene, 3000);
-    let solution = solve(&problem, with_rays(1_000_000));
+fn fringe(problem: &Problem) -> (usize, usize) {
+    let solution = solve(problem, with_rays(1_000_000));
     let is_floor = |&e: &u32| problem.object(e) == 0;
     let is_between = |e: &u32| (0.15..0.85).contains(&solution.irradiance[*e as usize].luminance());
     let between = problem.mesh.elements().filter(is_floor).filter(is_between).count();
-    let field = VertexField::as_computed(&problem, &solution);
+    let field = VertexField::as_computed(problem, &solution);
     let lit = problem.mesh.elements().filter(is_floor).filter(|&e| solution.irradiance[e as usize].luminance() > 0.5);
     let is_off = |v: &u32| (field.irradiance(*v).luminance() - 1.0).abs() > 0.15;
-    (between, lit.flat_map(|e| field.vertices_at(&problem, problem.mesh.place(e))).filter(is_off).count())
+    (between, lit.flat_map(|e| field.vertices_at(problem, problem.mesh.place(e))).filter(is_off).count())
 }
 
 #[test]
@@ -118,7 +127,7 @@ fn boxes_on_and_in_a_floor_have_no_fringe() {
             // Behind it nothing is seen, and there is no light.
             material.two_sided = false;
         }
-        let (cut, whole) = (fringe(cut_at_contacts(scene.clone(), DETAIL)), fringe(scene));
+        let (cut, whole) = (fringe(&cut(&scene, 3000, true)), fringe(&cut(&scene, 3000, false)));
         assert_eq!(cut, (0, 0), "z = {low}");
         assert!(whole.0 > 10, "z = {low}: elements lie on both sides to begin with: {whole:?}");
     }

@@ -153,6 +153,6 @@ fn push_divisions(tree: &[Node], number: u32, divisions: &mut Vec<Division>) {
     if first == LEAF {
         return divisions.push(Division::Cells(1));
     }
-    divisions.push(Division::Bisected(from));
+    divisions.push(Division::Bisected { from, share: 0.5 });
     [first, first + 1].into_iter().for_each(|half| push_divisions(tree, half, divisions));
 }

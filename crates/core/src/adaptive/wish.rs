@@ -6,7 +6,7 @@
 use super::{Effort, Followed, follow_light};
 use crate::mesh::{ElementMesh, Resolution};
 use crate::run::run;
-use crate::scene::Scene;
+use crate::scene::{Contacts, Scene};
 use crate::solvers::Progress;
 use crate::solvers::budget::{self, RAYS_PER_ELEMENT};
 use crate::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
@@ -45,6 +45,8 @@ impl Spread {
 pub struct Wish {
     pub resolution: Resolution,
     pub spread: Spread,
+    /// Whether elements are cut along what stands on them.
+    pub along_contacts: bool,
     pub budget: Budget,
     /// Of the whole solve, if it is limited.
     pub time: Option<Duration>,
@@ -72,8 +74,14 @@ impl Wish {
         check: impl Fn(&Problem) -> Result<(), E>,
         mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Meshed, E> {
-        let Some(elements) = self.adaptive_elements(&scene)? else {
-            let problem = Problem::new(scene, self.resolution)?;
+        let elements = self.adaptive_elements(&scene)?;
+        let contacts = match self.along_contacts {
+            true => Contacts::of(&scene, self.resolution.typical_edge(&scene)),
+            false => Contacts::NONE,
+        };
+        let Some(elements) = elements else {
+            let cut = self.resolution.cut_along(&scene, &contacts)?;
+            let problem = Problem::with_cut(scene, &cut)?;
             return Ok(Meshed { problem, budget: self.budget, took: Duration::ZERO, was_short: false });
         };
         // As many rays as equal elements would get.
@@ -84,8 +92,9 @@ impl Wish {
         let enough = RAYS_PER_ELEMENT.saturating_mul(elements);
         let rays = most_rays(budget).filter(|&rays| rays < enough / 2).unwrap_or(enough);
         let effort = Effort { rays, seed: SEED, light: self.light };
+        let before_contacts = self.resolution.most_before(&scene, &contacts)?.unwrap_or(elements);
         let (start, mut was_short) = (Instant::now(), false);
-        let Followed { problem, rays } = follow_light(scene, elements, effort, |problem, settings| {
+        let Followed { problem, rays } = follow_light(scene, before_contacts, effort, |problem, settings| {
             check(problem)?;
             let is_late = |start: Instant| self.time.is_some_and(|time| start.elapsed() > time.mul_f64(PATIENCE));
             let solution = solve(problem, settings, |progress| {
@@ -94,6 +103,8 @@ impl Wish {
             })?;
             Ok::<_, E>(Some(solution).filter(|_| !was_short))
         })?;
+        let cut = problem.mesh.cut().along(&problem.scene, &contacts, elements);
+        let problem = problem.cut_anew(&cut)?;
         Ok(Meshed { problem, budget: taken_off(budget, rays), took: start.elapsed(), was_short })
     }
 

@@ -18,6 +18,8 @@ use uvunwrap::{MeshInput, Options, Packing};
 const MANY: usize = 20_000;
 /// Share of the map that surfaces cover, in estimates.
 const USED: f64 = 0.3;
+/// Barycentric coordinates this close to a border lie on it.
+const ON_BORDER: f32 = 1e-5;
 
 /// Coordinates of faces.
 pub struct Unwrapped {
@@ -140,11 +142,12 @@ fn edge(corners: &[u32; 3], k: usize) -> [u32; 2] {
 
 /// On which edges of a face something stands, in the order of its corners as they are seen.
 fn foot(problem: &Problem, face: &Face) -> [bool; 3] {
-    let scene = &problem.scene;
-    let mut vertices = scene.triangles[face.triangle as usize].vertices;
-    if face.back {
-        vertices.swap(1, 2);
-    }
-    let stands_on = |k: usize| scene.contacts.binary_search(&edge(&vertices, k)).is_ok();
-    if scene.contacts.is_empty() { [false; 3] } else { [0, 1, 2].map(stands_on) }
+    let mesh = &problem.mesh;
+    let middles = [Vec2::new(0.5, 0.0), Vec2::splat(0.5), Vec2::new(0.0, 0.5)];
+    let [ab, bc, ca] = middles.map(|middle| {
+        let (patch, on_patch) = mesh.patch_at(face.triangle, middle);
+        let off = [on_patch.y, 1.0 - on_patch.x - on_patch.y, on_patch.x];
+        mesh.beside(patch).iter().zip(off).any(|(stands_on, off)| *stands_on && off.abs() < ON_BORDER)
+    });
+    if face.back { [ca, bc, ab] } else { [ab, bc, ca] }
 }

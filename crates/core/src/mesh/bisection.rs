@@ -1,49 +1,86 @@
-//! Patches that are bisected where the light asks for smaller elements: from a corner to the middle of the edge opposite, and the halves again.
+//! Patches that consist of others: bisected where the light asks for smaller elements or something stands on them, from a corner to a point of
+//! the edge opposite, and the two again; or split into cells, each of which is a patch.
 //!
-//! Which corner is free: so elements can be long where light changes in one direction only, along the edge of a shadow or a wall. What a point
-//! is in the barycentric coordinates of a half is exact, and every lookup goes down the same way: O(depth), and not a step on a patch that
-//! is not bisected.
+//! Which corner is free: so elements can be long where light changes in one direction only, along the edge of a shadow or a wall. Which point is
+//! free, too: the middle where the light asks, and that where a contact meets the edge ([`super::contacts`]). What a point
+//! is in the barycentric coordinates of a part is exact, and every lookup goes down the same way: O(depth), and not a step on a patch that
+//! is not divided.
 
 use super::{ElementMesh, Patch, cells};
 use glam::Vec2;
 use std::ops::{Add, Mul};
 
-/// A patch is bisected so often at most: a part of it has then a 2^24th of its area.
+/// A patch is bisected so often at most for the light: a part of it has then a 2^24th of its area.
 pub const MOST_BISECTIONS: usize = 24;
+/// Patches lie so deep in one another at most.
+pub const MOST_DEPTH: usize = 64;
 
 /// What a patch is cut into.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Division {
     /// m² congruent elements a side, for m divisions along each edge (see [`cells`]).
     Cells(u16),
-    /// Two halves, from corner 0, 1 or 2 to the middle of the edge opposite.
-    Bisected(u8),
+    /// Two patches, from corner 0, 1 or 2 to the point that lies at this `share` of the edge opposite, from the corner after `from`.
+    Bisected { from: u8, share: f32 },
+    /// m² congruent patches, where the elements would be.
+    Split(u16),
+    /// Something stands on some edges of the patch: a bit for each, from corner k to the next. What it is cut into comes after.
+    Beside(u8),
 }
 
-/// The halves of a triangle that is bisected from its corner `from`, in its orientation: first the one with the corner after `from`. Both begin
+/// The parts of a triangle that is bisected from its corner `from`, in its orientation: first the one with the corner after `from`. Both begin
 /// with `from` itself.
-pub fn halves<T: Copy + Add<Output = T> + Mul<f32, Output = T>>(corners: [T; 3], from: u8) -> [[T; 3]; 2] {
+pub fn bisected<T: Copy + Add<Output = T> + Mul<f32, Output = T>>(
+    corners: [T; 3],
+    from: u8,
+    share: f32,
+) -> [[T; 3]; 2] {
     let [apex, after, before] = [0, 1, 2].map(|k| corners[(usize::from(from) + k) % 3]);
-    let middle = (after + before) * 0.5;
-    [[apex, after, middle], [apex, middle, before]]
+    let foot = after * (1.0 - share) + before * share;
+    [[apex, after, foot], [apex, foot, before]]
 }
 
-/// The half, first or second, in which the barycentric coordinates `uv` lie, and the barycentric coordinates on it.
+/// The part, first or second, in which the barycentric coordinates `uv` lie, and the barycentric coordinates on it.
 #[inline(always)]
-pub fn halved(uv: Vec2, from: u8) -> (u32, Vec2) {
+pub fn bisected_at(uv: Vec2, from: u8, share: f32) -> (u32, Vec2) {
     let apex = 1.0 - uv.x - uv.y;
     let (after, before) = match from {
         0 => (uv.x, uv.y),
         1 => (uv.y, apex),
         _ => (apex, uv.x),
     };
+    let rest = 1.0 - share;
     // No branch, for it would be guessed wrong half the time.
-    let second = before > after;
-    let within = if second { [2.0 * after, before - after] } else { [after - before, 2.0 * before] };
+    let second = before * rest > after * share;
+    let (near, far, own) = if second { (after, before, rest) } else { (before, after, share) };
+    let at_foot = near / own;
+    let at_far = far - at_foot * (1.0 - own);
+    let within = if second { [at_foot, at_far] } else { [at_far, at_foot] };
     (u32::from(second), Vec2::from(within))
 }
 
-/// Where a part lies on the patch that is bisected first, its root.
+/// [`bisected`] in the middle.
+pub fn halves<T: Copy + Add<Output = T> + Mul<f32, Output = T>>(corners: [T; 3], from: u8) -> [[T; 3]; 2] {
+    bisected(corners, from, 0.5)
+}
+
+/// [`bisected_at`], in the middle.
+pub fn halved(uv: Vec2, from: u8) -> (u32, Vec2) {
+    bisected_at(uv, from, 0.5)
+}
+
+/// What a patch consists of.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Content {
+    /// Elements; something stands on some of its edges, a bit each.
+    Elements { beside: u8 },
+    /// Two patches.
+    Bisected { from: u8 },
+    /// Patches as regular as elements.
+    Split,
+}
+
+/// Where a part lies on the patch that is divided first, its root.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     root: u32,
@@ -52,17 +89,30 @@ pub(super) struct Part {
 }
 
 impl Patch {
-    /// Whether it has halves instead of elements.
+    /// Whether it has patches instead of elements.
     #[inline(always)]
-    pub(super) fn is_bisected(&self) -> bool {
-        self.divisions == 0
+    pub(super) fn is_divided(&self) -> bool {
+        !matches!(self.content, Content::Elements { .. })
     }
 
-    /// The half at the point `uv` of a patch that is bisected, and the barycentric coordinates on the half.
+    /// The patch at the point `uv` of one that is divided, and the barycentric coordinates on that.
     #[inline(always)]
-    pub(super) fn half_at(&self, uv: Vec2) -> (u32, Vec2) {
-        let (half, within) = halved(uv, self.from);
-        (self.first + half, within)
+    pub(super) fn part_at(&self, uv: Vec2) -> (u32, Vec2) {
+        let (part, within) = match self.content {
+            Content::Bisected { from } => bisected_at(uv, from, self.measure),
+            _ => cells::locate(uv, self.divisions),
+        };
+        (self.first + part, within)
+    }
+
+    /// Numbers of the patches of one that is divided.
+    pub(super) fn parts(&self) -> std::ops::Range<u32> {
+        let count = match self.content {
+            Content::Elements { .. } => 0,
+            Content::Bisected { .. } => 2,
+            Content::Split => cells::count(self.divisions),
+        };
+        self.first..self.first + count
     }
 }
 
@@ -70,8 +120,8 @@ impl ElementMesh {
     /// The patch with elements at the point `uv` of `patch`, and the barycentric coordinates on it.
     #[inline(always)]
     pub(super) fn leaf_at(&self, mut patch: u32, mut uv: Vec2) -> (u32, Vec2) {
-        while let Some(bisected) = self.patches.get(patch as usize).filter(|patch| patch.is_bisected()) {
-            (patch, uv) = bisected.half_at(uv);
+        while let Some(divided) = self.patches.get(patch as usize).filter(|patch| patch.is_divided()) {
+            (patch, uv) = divided.part_at(uv);
         }
         (patch, uv)
     }
@@ -89,36 +139,57 @@ impl ElementMesh {
         [p, q - p, r - p]
     }
 
-    /// Gives `patch` and its `area` [m²] the division that comes next; if it is bisected, its halves get those after it.
+    /// Gives `patch` and its `area` [m²] the division that comes next; if it is divided, its parts get those after it.
     pub(super) fn divide(&mut self, patch: u32, area: f64, divisions: &mut impl Iterator<Item = Division>) {
+        let (first, triangle) = (self.patches.len() as u32, self.triangle_of_patch(patch));
+        let Part { root, corners } = self.part(patch);
         let whole = &mut self.patches[patch as usize];
-        let from = match divisions.next() {
-            None => return,
+        match divisions.next() {
+            None => {}
             Some(Division::Cells(m)) => {
                 whole.divisions = m;
-                whole.element_area = (area / f64::from(cells::count(m))) as f32;
-                return;
+                whole.measure = (area / f64::from(cells::count(m))) as f32;
             }
-            Some(Division::Bisected(from)) => from,
-        };
-        let (first, triangle) = (self.patches.len() as u32, self.triangle_of_patch(patch));
-        self.patches[patch as usize] = Patch { triangle, first, divisions: 0, from, element_area: 0.0 };
-        let Part { root, corners } = self.part(patch);
-        for corners in halves(corners, from) {
+            Some(Division::Beside(beside)) => {
+                whole.content = Content::Elements { beside };
+                self.divide(patch, area, divisions);
+            }
+            Some(Division::Bisected { from, share }) => {
+                *whole = Patch { triangle, first, divisions: 0, content: Content::Bisected { from }, measure: share };
+                self.push_parts(triangle, root, bisected(corners, from, share));
+                let areas = [share, 1.0 - share].map(|share| area * f64::from(share));
+                (first..).zip(areas).for_each(|(part, area)| self.divide(part, area, divisions));
+            }
+            Some(Division::Split(m)) => {
+                *whole = Patch { triangle, first, divisions: m, content: Content::Split, measure: 0.0 };
+                let [a, b, c] = corners;
+                let on_root = |uv: Vec2| a + uv.x * (b - a) + uv.y * (c - a);
+                let count = cells::count(m);
+                self.push_parts(triangle, root, (0..count).map(|cell| cells::corners(cell, m).map(on_root)));
+                (first..first + count).for_each(|part| self.divide(part, area / f64::from(count), divisions));
+            }
+        }
+    }
+
+    fn push_parts(&mut self, triangle: u32, root: u32, parts: impl IntoIterator<Item = [Vec2; 3]>) {
+        for corners in parts {
             self.patches.push(Patch { triangle, ..Patch::NONE });
             self.parts.push(Part { root, corners });
         }
-        [first, first + 1].into_iter().for_each(|half| self.divide(half, 0.5 * area, divisions));
     }
 
-    /// The division of `patch`, and if it is bisected those of its halves, as [`ElementMesh::divide`] takes them.
+    /// The division of `patch`, and if it is divided those of its parts, as [`ElementMesh::divide`] takes them.
     pub(super) fn divisions_below(&self, patch: u32, divisions: &mut Vec<Division>) {
-        let Patch { first, divisions: m, from, .. } = self.patches[patch as usize];
-        if m > 0 {
-            return divisions.push(Division::Cells(m));
+        let whole = self.patches[patch as usize];
+        match whole.content {
+            Content::Elements { beside } => {
+                divisions.extend((beside != 0).then_some(Division::Beside(beside)));
+                divisions.push(Division::Cells(whole.divisions));
+            }
+            Content::Bisected { from } => divisions.push(Division::Bisected { from, share: whole.measure }),
+            Content::Split => divisions.push(Division::Split(whole.divisions)),
         }
-        divisions.push(Division::Bisected(from));
-        [first, first + 1].into_iter().for_each(|half| self.divisions_below(half, divisions));
+        whole.parts().for_each(|part| self.divisions_below(part, divisions));
     }
 
     /// `patch` as a part, be it of itself.
@@ -131,15 +202,16 @@ impl ElementMesh {
 
 #[cfg(test)]
 mod tests {
-    use super::{Division, halved, halves};
+    use super::{Division, bisected, bisected_at, halved, halves};
     use crate::math::hash;
+    use crate::mesh::cells;
     use crate::mesh::{Cut, ElementMesh, Point, Resolution, TOGETHER};
     use crate::scene::Scene;
     use crate::scene::builtin::builtin;
     use glam::{Vec2, Vec3};
 
-    /// Needles among its triangles, two-sided by turns, deeply and unevenly bisected.
-    fn bisected() -> (Scene, Cut) {
+    /// Needles among its triangles, two-sided by turns, deeply and unevenly divided.
+    fn divided() -> (Scene, Cut) {
         let mut scene = builtin("office").unwrap();
         (0..).zip(&mut scene.materials).for_each(|(k, material)| material.two_sided = k % 2 == 0);
         let Cut { slices, divisions, leaders } = Resolution::Elements(2000).cut(&scene).unwrap();
@@ -149,15 +221,25 @@ mod tests {
         (scene, Cut { slices, divisions, leaders })
     }
 
-    /// Divisions of a patch that is bisected at random, `depth` times at most.
+    /// Divisions of a patch that is divided at random, `depth` times at most.
     fn tree(depth: usize, state: &mut u64) -> Vec<Division> {
         *state = hash::mix(*state);
         let random = *state % 16;
         if depth == 0 || random < 4 {
-            return vec![Division::Cells(1 + (random % 3) as u16)];
+            let beside = Division::Beside((*state >> 32 & 7) as u8);
+            let marked = random == 1 && beside != Division::Beside(0);
+            return [vec![beside; usize::from(marked)], vec![Division::Cells(1 + (random % 3) as u16)]].concat();
         }
-        let halves: Vec<Division> = (0..2).flat_map(|_| tree(depth - 1, state)).collect();
-        [vec![Division::Bisected((random % 3) as u8)], halves].concat()
+        // Nine parts take the place of about three bisections.
+        let (division, parts, below) = match (random % 3) as u8 {
+            _ if random == 15 => (Division::Split(3), cells::count(3), depth.saturating_sub(4)),
+            from if random < 8 => (Division::Bisected { from, share: 0.5 }, 2, depth - 1),
+            from => {
+                (Division::Bisected { from, share: (*state >> 32) as f32 / (1u64 << 33) as f32 + 0.25 }, 2, depth - 1)
+            }
+        };
+        let parts: Vec<Division> = (0..parts).flat_map(|_| tree(below, state)).collect();
+        [vec![division], parts].concat()
     }
 
     fn points() -> impl Iterator<Item = Vec2> {
@@ -167,6 +249,24 @@ mod tests {
             Vec2::new(u, (k as f32 * 0.414_214).fract() * (1.0 - u))
         });
         edges.into_iter().chain(inner)
+    }
+
+    #[test]
+    fn both_parts_make_the_whole_wherever_it_is_bisected() {
+        let whole = [Vec2::ZERO, Vec2::X, Vec2::Y];
+        for (from, share) in (0..3).flat_map(|from| [0.01, 0.3, 0.5, 0.999].map(|share| (from, share))) {
+            for uv in points().skip(6) {
+                let (part, within) = bisected_at(uv, from, share);
+                let [a, b, c] = bisected(whole, from, share)[part as usize];
+                assert!((a + within.x * (b - a) + within.y * (c - a)).abs_diff_eq(uv, 1e-6), "{from} {share} {uv}");
+                assert!(
+                    within.min_element() >= -1e-5 && within.element_sum() < 1.00001,
+                    "{from} {share} {uv} {within}"
+                );
+                let area = if part == 0 { share } else { 1.0 - share };
+                assert!(((b - a).perp_dot(c - a) - area).abs() < 1e-6);
+            }
+        }
     }
 
     #[test]
@@ -185,7 +285,7 @@ mod tests {
 
     #[test]
     fn points_lead_to_the_element_they_lie_on_and_back() {
-        let (scene, cut) = bisected();
+        let (scene, cut) = divided();
         let mesh = ElementMesh::with_cut(&scene, &cut).unwrap();
         assert!(mesh.parts.len() > 10_000, "{}", mesh.parts.len());
         for triangle in 0..scene.triangles.len() as u32 {
@@ -211,7 +311,7 @@ mod tests {
 
     #[test]
     fn areas_are_exact_and_add_up() {
-        let (scene, cut) = bisected();
+        let (scene, cut) = divided();
         let mesh = ElementMesh::with_cut(&scene, &cut).unwrap();
         let whole = ElementMesh::new(&scene, Resolution::Elements(1)).unwrap();
         assert_eq!(mesh.len(), cut.element_count(&scene).unwrap());
@@ -232,13 +332,13 @@ mod tests {
 
     #[test]
     fn cuts_come_back() {
-        let (scene, cut) = bisected();
+        let (scene, cut) = divided();
         assert!(ElementMesh::with_cut(&scene, &cut).unwrap().cut() == cut);
     }
 
     #[test]
     fn only_patches_with_elements_are_counted_and_together_they_are_the_mesh() {
-        let (scene, cut) = bisected();
+        let (scene, cut) = divided();
         let mesh = ElementMesh::with_cut(&scene, &cut).unwrap();
         let of_patch = |patch| {
             let sides = 1 + u32::from(mesh.is_two_sided(mesh.triangle_of_patch(patch)));
@@ -249,7 +349,7 @@ mod tests {
 
     #[test]
     fn all_lookups_agree() {
-        let (scene, cut) = bisected();
+        let (scene, cut) = divided();
         let mesh = ElementMesh::with_cut(&scene, &cut).unwrap();
         let all: Vec<Vec2> = points().chain(points()).take(40).collect();
         for triangle in 0..scene.triangles.len() as u32 {
@@ -273,22 +373,38 @@ mod tests {
 
     #[test]
     fn bad_trees_are_refused() {
-        let (scene, cut) = bisected();
+        let (scene, cut) = divided();
         let divisions = |divisions: Vec<Division>| Cut { divisions, ..cut.clone() };
-        let endless = divisions(vec![Division::Bisected(0); 1_000_000]);
+        let endless = divisions(vec![Division::Bisected { from: 0, share: 0.5 }; 1_000_000]);
+        let endlessly_beside = divisions(vec![Division::Beside(1); 1_000_000]);
         let short = divisions(cut.divisions[..cut.divisions.len() - 1].to_vec());
         let long = divisions([&cut.divisions[..], &[Division::Cells(1)]].concat());
-        let mut of_no_corner = cut.divisions.clone();
-        of_no_corner.iter_mut().for_each(|division| {
-            if matches!(division, Division::Bisected(_)) {
-                *division = Division::Bisected(3);
-            }
-        });
-        let empty = cut.divisions.iter().map(|division| match division {
-            Division::Cells(_) => Division::Cells(0),
-            bisected => *bisected,
-        });
-        for bad in [endless, short, long, divisions(of_no_corner), divisions(empty.collect()), divisions(Vec::new())] {
+        let changed =
+            |change: &dyn Fn(Division) -> Division| divisions(cut.divisions.iter().map(|d| change(*d)).collect());
+        let bisected = |wrong: Division| {
+            changed(&move |division| if matches!(division, Division::Bisected { .. }) { wrong } else { division })
+        };
+        let cells = |wrong: Division| {
+            changed(&move |division| if matches!(division, Division::Cells(_)) { wrong } else { division })
+        };
+        let of_no_corner = bisected(Division::Bisected { from: 3, share: 0.5 });
+        let shares = [0.0, 1.0, -1.0, f32::NAN].map(|share| bisected(Division::Bisected { from: 0, share }));
+        let no_edge =
+            changed(&|division| if matches!(division, Division::Beside(_)) { Division::Beside(8) } else { division });
+        let split =
+            changed(&|division| if matches!(division, Division::Split(_)) { Division::Split(0) } else { division });
+        let bad = [
+            endless,
+            endlessly_beside,
+            short,
+            long,
+            of_no_corner,
+            no_edge,
+            split,
+            cells(Division::Cells(0)),
+            divisions(Vec::new()),
+        ];
+        for bad in bad.into_iter().chain(shares) {
             assert!(ElementMesh::with_cut(&scene, &bad).unwrap_err().to_string().contains("cut"));
         }
     }

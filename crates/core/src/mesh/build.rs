@@ -81,11 +81,11 @@ impl ElementMesh {
         const WHOLE: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::Y];
         let first_element = self.patch.len() as u32;
         let patches: Vec<u32> = cluster.triangles().map(|t| self.surfaces[t as usize].first_patch).collect();
-        let area: f64 = patches.iter().map(|&patch| f64::from(self.patches[patch as usize].element_area)).sum();
+        let area: f64 = patches.iter().map(|&patch| f64::from(self.patches[patch as usize].measure)).sum();
         let (mut reflectivity, mut emission) = (Rgb::BLACK, Rgb::BLACK);
         for (piece, &patch) in cluster.pieces().iter().zip(&patches) {
             let patch = &mut self.patches[patch as usize];
-            (patch.first, patch.element_area) = (first_element, area as f32);
+            (patch.first, patch.measure) = (first_element, area as f32);
             let (reflects, emits) = averages.over_cell(piece.triangle, WHOLE);
             reflectivity += reflects * piece.share();
             emission += emits * piece.share();
@@ -107,9 +107,8 @@ impl ElementMesh {
     fn push_elements(&mut self, averages: &Averages, patch: u32) {
         let first = self.patch.len();
         let whole = &mut self.patches[patch as usize];
-        if whole.is_bisected() {
-            let halves = [whole.first, whole.first + 1];
-            return halves.into_iter().for_each(|half| self.push_elements(averages, half));
+        if whole.is_divided() {
+            return whole.parts().for_each(|part| self.push_elements(averages, part));
         }
         whole.first = first as u32;
         let Patch { triangle, divisions, .. } = *whole;

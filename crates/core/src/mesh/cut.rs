@@ -1,7 +1,7 @@
-//! How the triangles of a scene are cut: across into slices, and each patch regularly, or into halves and these again; and which are put
+//! How the triangles of a scene are cut: across into slices, and each patch regularly, or into patches and these again; and which are put
 //! together.
 
-use super::bisection::{Division, MOST_BISECTIONS};
+use super::bisection::{Division, MOST_DEPTH};
 use super::cells;
 use super::slices::Slices;
 use crate::Error;
@@ -11,11 +11,11 @@ use crate::scene::{Scene, Shape};
 pub const MOST_ELEMENTS: u64 = u32::MAX as u64 - 1;
 
 /// All that is needed to make the same elements again.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cut {
     /// For every triangle.
     pub slices: Vec<Slices>,
-    /// For every patch, triangle by triangle; after each that is bisected follow those of its halves.
+    /// For every patch, triangle by triangle; after each that is divided follow those of its parts.
     pub divisions: Vec<Division>,
     /// For every triangle the least one of its cluster, or its own number; nothing if no triangles are put together.
     pub leaders: Vec<u32>,
@@ -41,7 +41,7 @@ impl Cut {
         let Some(of_side) = self.elements_of_sides() else {
             return parameter(
                 self.divisions.len(),
-                "divisions are needed for each patch, or for its halves, and no more",
+                "divisions are needed for each patch, or for its parts, and no more",
             );
         };
         if !self.leaders.is_empty() && self.leaders.len() != scene.triangles.len() {
@@ -63,7 +63,7 @@ impl Cut {
     }
 
     /// Number of elements into which a side of each triangle is cut, were there no clusters; `None` if the divisions are too few or too
-    /// many, or wrong, or those of a patch that is bisected too often.
+    /// many, or wrong, or those of a patch that is divided too often.
     fn elements_of_sides(&self) -> Option<Vec<u64>> {
         let mut divisions = self.divisions.iter().copied();
         let mut of_side = |slices: &Slices| {
@@ -72,6 +72,16 @@ impl Cut {
         };
         let all = self.slices.iter().map(&mut of_side).collect();
         if divisions.next().is_some() { None } else { all }
+    }
+
+    /// Where in the divisions those of each triangle begin, and the end.
+    pub(super) fn first_divisions(&self) -> Vec<usize> {
+        let mut divisions = self.divisions.iter().copied();
+        let end_of = |slices: &Slices| {
+            let _ = (0..slices.patch_count()).try_for_each(|_| elements_of_patch(&mut divisions).map(drop));
+            self.divisions.len() - divisions.len()
+        };
+        std::iter::once(0).chain(self.slices.iter().map(end_of)).collect()
     }
 
     /// Whether triangle `t` may be in the cluster whose least triangle is `leader`.
@@ -86,7 +96,7 @@ impl Cut {
     }
 }
 
-/// Elements a side of the patch whose divisions come next; `None` if they end before the patch does, or it is bisected too often.
+/// Elements a side of the patch whose divisions come next; `None` if they end before the patch does, or it is divided too often.
 fn elements_of_patch(divisions: &mut impl Iterator<Item = Division>) -> Option<u64> {
     let mut elements = 0u64;
     // How many patches are still to come at each depth.
@@ -98,10 +108,12 @@ fn elements_of_patch(divisions: &mut impl Iterator<Item = Division>) -> Option<u
         }
         *here -= 1;
         match divisions.next()? {
-            Division::Cells(0) | Division::Bisected(3..) => return None,
-            Division::Cells(m) => elements = elements.saturating_add(u64::from(cells::count(m))),
-            Division::Bisected(_) if left.len() > MOST_BISECTIONS => return None,
-            Division::Bisected(_) => left.push(2),
+            Division::Cells(m) if m > 0 => elements = elements.saturating_add(u64::from(cells::count(m))),
+            _ if left.len() > MOST_DEPTH => return None,
+            Division::Bisected { from: 0..3, share } if share > 0.0 && share < 1.0 => left.push(2),
+            Division::Split(m) if m > 0 => left.push(cells::count(m)),
+            Division::Beside(0..8) => left.push(1),
+            _ => return None,
         }
     }
     Some(elements)

@@ -2,8 +2,9 @@
 //!
 //! A point leads to its triangle, which leads to its patch: two tables, and with rays that end here and there both are read in
 //! no order. One point after the other, each reading waits for memory. So each table is read for all points before anything is
-//! computed: then the processor waits for many readings at once. Patches that are bisected are gone down together, too.
+//! computed: then the processor waits for many readings at once. Patches that are divided are gone down together, too.
 
+use super::bisection::Content;
 use super::{ElementMesh, Patch, Surface, cells};
 use glam::{Vec2, Vec3};
 
@@ -42,10 +43,10 @@ impl ElementMesh {
         for (patch, &(number, _)) in patches.iter_mut().zip(&on_patch[..count]) {
             *patch = self.patches[number as usize];
         }
-        while patches[..count].iter().any(Patch::is_bisected) {
-            let bisected = patches[..count].iter_mut().zip(&mut on_patch).filter(|(patch, _)| patch.is_bisected());
-            for (patch, on_patch) in bisected {
-                *on_patch = patch.half_at(on_patch.1);
+        while patches[..count].iter().any(Patch::is_divided) {
+            let divided = patches[..count].iter_mut().zip(&mut on_patch).filter(|(patch, _)| patch.is_divided());
+            for (patch, on_patch) in divided {
+                *on_patch = patch.part_at(on_patch.1);
                 *patch = self.patches[on_patch.0 as usize];
             }
         }
@@ -65,7 +66,8 @@ impl Surface {
 }
 
 impl Patch {
-    pub(super) const NONE: Patch = Patch { triangle: 0, first: 0, divisions: 1, from: 0, element_area: 0.0 };
+    pub(super) const NONE: Patch =
+        Patch { triangle: 0, first: 0, divisions: 1, content: Content::Elements { beside: 0 }, measure: 0.0 };
 }
 
 #[cfg(test)]

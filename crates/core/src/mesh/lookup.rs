@@ -47,10 +47,10 @@ impl Lookup<'_> {
             let (patch, uv) = self.slices.locate(uv);
             (&self.patches[patch as usize], uv)
         };
-        while patch.is_bisected() {
-            let half;
-            (half, uv) = patch.half_at(uv);
-            patch = &self.mesh.patches[half as usize];
+        while patch.is_divided() {
+            let part;
+            (part, uv) = patch.part_at(uv);
+            patch = &self.mesh.patches[part as usize];
         }
         (patch.first + cells::at(uv, patch.divisions), cells::count(patch.divisions))
     }
@@ -80,17 +80,17 @@ impl ElementMesh {
     }
 
     /// Second stage, for points of any triangles: into `front` the element on the front, and into `further` by how much the number
-    /// of the one on the back, if there is any, is greater. Where a patch is bisected x and y become those of its half. Patches without
+    /// of the one on the back, if there is any, is greater. Where a patch is divided x and y become those of its part. Patches without
     /// a meaning have some elements.
     #[inline(always)]
     pub fn fronts_at(&self, patch: &[u32], [x, y]: [&mut [f32]; 2], front: &mut [u32], further: &mut [u32]) {
         let within = x.iter_mut().zip(&mut *y);
         for (((front, further), &patch), (x, y)) in front.iter_mut().zip(&mut *further).zip(patch).zip(within) {
             let mut found = self.patches.get(patch as usize);
-            while let Some(bisected) = found.filter(|patch| patch.is_bisected()) {
-                let (half, uv) = bisected.half_at(Vec2::new(*x, *y));
+            while let Some(divided) = found.filter(|patch| patch.is_divided()) {
+                let (part, uv) = divided.part_at(Vec2::new(*x, *y));
                 (*x, *y) = (uv.x, uv.y);
-                found = self.patches.get(half as usize);
+                found = self.patches.get(part as usize);
             }
             (*front, *further) = found.map_or((0, 1), |patch| (patch.first, u32::from(patch.divisions)));
         }

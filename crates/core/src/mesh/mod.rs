@@ -1,8 +1,8 @@
 //! Elements: the small pieces of surface that carry one radiosity each.
 //!
 //! Surfaces are traced, elements are scored. A triangle is one *patch*, or if it is a needle several (see [`slices`]); a patch
-//! with `m` divisions is cut into `m²` congruent elements (see [`cells`]), or bisected, and the halves again (see [`bisection`]). So a hit's
-//! barycentric coordinates lead to its element in O(1), or O(depth) where the mesh follows the light, and area and normal need no storage
+//! with `m` divisions is cut into `m²` congruent elements (see [`cells`]), or into patches, and these again (see [`bisection`]). So a hit's
+//! barycentric coordinates lead to its element in O(1), or O(depth) where the mesh follows the light or contacts, and area and normal need no storage
 //! of their own. Where triangles are smaller than elements should be, an element is a *cluster* of whole triangles instead (see
 //! [`clusters`]), each of which is a patch of one cell. A two-sided triangle has two sets of elements back to back. Elements
 //! are numbered triangle by triangle along a space-filling curve, so neighbouring numbers are neighbours in space: rays shot
@@ -14,6 +14,7 @@ mod build;
 pub mod cells;
 mod clip;
 mod clusters;
+mod contacts;
 mod cut;
 mod grow;
 mod locate;
@@ -38,7 +39,7 @@ pub(crate) use triangle::surface_area;
 
 use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
-use bisection::Part;
+use bisection::{Content, Part};
 use clusters::Clusters;
 use glam::{Vec2, Vec3};
 use sparse::SparseColors;
@@ -47,7 +48,7 @@ use sparse::SparseColors;
 #[derive(Clone, Debug)]
 pub struct ElementMesh {
     surfaces: Vec<Surface>,
-    /// Those of each triangle in turn, then the halves of each that is bisected.
+    /// Those of each triangle in turn, then the parts of each that is divided.
     patches: Vec<Patch>,
     /// Where the patches lie that are parts of others, the last ones.
     parts: Vec<Part>,
@@ -67,18 +68,17 @@ struct Surface {
     normal: Vec3,
 }
 
-/// A part of a triangle that is cut regularly: first the elements of its front, then those of its back; or bisected.
+/// A part of a triangle that is cut regularly: first the elements of its front, then those of its back; or divided into patches.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
     triangle: u32,
-    /// The first of its elements, or of its halves.
+    /// The first of its elements, or of its parts.
     first: u32,
-    /// None if it is bisected.
+    /// Along each edge; none if it is bisected.
     divisions: u16,
-    /// The corner from which it is bisected.
-    from: u8,
-    /// Area of each element [m²]; of a cluster that of all its triangles.
-    element_area: f32,
+    content: Content,
+    /// Area of each element [m²]; of a cluster that of all its triangles. Of a patch that is bisected the share at which it is.
+    measure: f32,
 }
 
 /// Where an element lies on its triangle, or on one of them.
@@ -124,7 +124,7 @@ impl ElementMesh {
 
     /// Area [m²].
     pub fn area(&self, e: u32) -> f32 {
-        self.patch_of(e).element_area
+        self.patch_of(e).measure
     }
 
     /// Emitted flux `Pe = A Be` [lm].
@@ -177,9 +177,9 @@ impl ElementMesh {
         self.leaf_at(surface.first_patch + patch, within)
     }
 
-    /// Numbers of the patches that have elements, in ascending order: all but those that are bisected.
+    /// Numbers of the patches that have elements, in ascending order: all but those that are divided.
     pub fn patches(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..).zip(&self.patches).filter(|(_, patch)| !patch.is_bisected()).map(|(number, _)| number)
+        (0..).zip(&self.patches).filter(|(_, patch)| !patch.is_divided()).map(|(number, _)| number)
     }
 
     /// Triangle on which `patch` lies.
@@ -187,9 +187,18 @@ impl ElementMesh {
         self.patches[patch as usize].triangle
     }
 
-    /// Number of divisions along each edge of `patch`; 0 if it is bisected.
+    /// Number of elements along each edge of `patch`; 0 if it is divided into patches.
     pub fn divisions(&self, patch: u32) -> u16 {
-        self.patches[patch as usize].divisions
+        let patch = &self.patches[patch as usize];
+        if patch.is_divided() { 0 } else { patch.divisions }
+    }
+
+    /// Whether something stands on each edge of `patch`, from corner k to the next.
+    pub fn beside(&self, patch: u32) -> [bool; 3] {
+        match self.patches[patch as usize].content {
+            Content::Elements { beside } => [0, 1, 2].map(|k| beside >> k & 1 == 1),
+            _ => [false; 3],
+        }
     }
 
     /// Barycentric coordinates on the triangle of the point `uv` of `patch`.
@@ -248,9 +257,9 @@ impl ElementMesh {
         let sides = |patch: &Patch| if self.is_two_sided(patch.triangle) { 2 } else { 1 };
         // Of the patches of a cluster only the one that stands for it.
         let counts =
-            |(number, patch): &(u32, &Patch)| !patch.is_bisected() && self.patch[patch.first as usize] == *number;
+            |(number, patch): &(u32, &Patch)| !patch.is_divided() && self.patch[patch.first as usize] == *number;
         let patches = (0..).zip(&self.patches).filter(counts);
-        patches.map(move |(_, patch)| (patch.element_area, sides(patch) * cells::count(patch.divisions)))
+        patches.map(move |(_, patch)| (patch.measure, sides(patch) * cells::count(patch.divisions)))
     }
 
     /// Total emitted flux of the surfaces [lm] per channel.

@@ -55,6 +55,16 @@ impl Resolution {
         }
     }
 
+    /// The same with another number of elements at most, if that is what is said.
+    pub(super) fn with_most(self, elements: u64, scene: &Scene) -> Resolution {
+        match self {
+            Resolution::Elements(_) => Resolution::Elements(elements.max(1)),
+            Resolution::Clustered(_) => Resolution::Clustered(elements.max(1)),
+            Resolution::Extra(_) => Resolution::Extra(elements.saturating_sub(Resolution::least(scene))),
+            Resolution::MaxEdge(edge) => Resolution::MaxEdge(edge),
+        }
+    }
+
     /// About as long [m] are the edges of equal elements that are not smaller because their triangle is.
     pub fn typical_edge(self, scene: &Scene) -> f32 {
         let of_triangle = |t: u32| surface_area(scene, t) * sides(scene, t) as f64;

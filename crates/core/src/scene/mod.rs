@@ -18,7 +18,7 @@ mod shells;
 mod validate;
 
 pub use camera::{Camera, Projection};
-pub use contacts::cut_at_contacts;
+pub use contacts::{Contacts, Flat, Plane, Segment, Touched};
 pub use image::{Image, Texture, Wrap};
 pub use light::{Light, LightKind};
 pub use light_groups::{Emitter, Grouping, LightGroup, MOST_GROUPS, Source};
@@ -41,9 +41,6 @@ pub struct Scene {
     pub lights: Vec<Light>,
     pub cameras: Vec<Camera>,
     pub shape: Shape,
-    /// Edges of triangles on which other surfaces stand, as sorted pairs of vertices in ascending order: see
-    /// [`cut_at_contacts`].
-    pub contacts: Vec<[u32; 2]>,
     /// Which triangles have a back that nobody can see, whatever their material says; empty if none has: see [`Scene::hide_insides`].
     pub hidden_backs: Vec<bool>,
     /// Coordinates in a lightmap of every vertex (glTF `TEXCOORD_1`), (0, 0) is the upper left corner of the map; empty

@@ -2,16 +2,16 @@
 //!
 //! A T-vertex of one side lies between two vertices of the other. Values are interpolated linearly between vertices, so it
 //! would bend the light along the edge on its own side only, which shows as a seam across a flat wall. So it takes the
-//! value that the piece of edge has where it lies ([`t_vertices`]), the longest if there are several. And a program that draws triangles leaves pinholes
+//! value that the piece of edge has where it lies ([`t_vertices`]), the longest if there are several, unless something stands at it. And a program that draws triangles leaves pinholes
 //! along such an edge, whatever the angle, unless both sides have the same vertices there ([`EdgePoints`]).
 
-use super::contacts::Contacts;
+use super::contacts;
 use super::crease::CREASE_ANGLE;
 use super::grid::{self, Side};
 use super::vertices::{Vertices, group_by};
 use crate::Problem;
 use crate::math::weld;
-use glam::{IVec3, Vec2, Vec3};
+use glam::{IVec3, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A vertex that takes the value `(1 - t) value[from] + t value[to]`.
@@ -26,8 +26,9 @@ pub struct TVertex {
 /// All T-vertices on smooth surfaces, in an order in which every one comes after those it depends on.
 pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
     let sides = vertices.grid.sides(&problem.mesh);
-    let contacts = Contacts::new(problem);
-    let is_open = |side: Side, ends| !contacts.divide_along(side.triangle(&problem.mesh), ends);
+    let is_open = |side: Side, ends| !contacts::divide_along(&problem.mesh, side.patch, ends);
+    // What stands there may be thinner than the tolerance, with an edge of the other side beside it.
+    let at_foot = contacts::at_foot(problem, vertices);
     let pieces = loose_pieces(problem, vertices, sides, is_open, |vertex| vertex);
     let mut found: Vec<(f32, TVertex)> = Vec::new();
     visit_crossings(
@@ -35,7 +36,7 @@ pub fn t_vertices(problem: &Problem, vertices: &Vertices) -> Vec<TVertex> {
         &pieces,
         |v| vertices.position(v),
         |piece, end, t| {
-            if end.normal.dot(piece.normal) > CREASE_ANGLE.cos() {
+            if !at_foot[end.key as usize] && end.normal.dot(piece.normal) > CREASE_ANGLE.cos() {
                 found.push((piece.length, TVertex { vertex: end.key, from: piece.from, to: piece.to, t }));
             }
         },
@@ -135,26 +136,25 @@ struct End {
     longest: f32,
 }
 
-/// Pieces of edges that belong to one side only: borders, creases, and edges between different divisions. Those `of_interest`, by their ends on
-/// the triangle.
+/// Pieces of edges that belong to one side only: borders, creases, and edges between different divisions. Those `of_interest`, by the grid points
+/// at their ends.
 fn loose_pieces(
     problem: &Problem,
     vertices: &Vertices,
     sides: impl Iterator<Item = Side>,
-    of_interest: impl Fn(Side, [Vec2; 2]) -> bool,
+    of_interest: impl Fn(Side, [[u32; 2]; 2]) -> bool,
     key: impl Fn(u32) -> u32,
 ) -> Vec<Piece> {
     let mesh = &problem.mesh;
     let mut pieces = Vec::new();
     for side in sides {
         for ends in grid::border(mesh.divisions(side.patch)) {
-            let on_triangle = ends.map(|ij| grid::on_triangle(mesh, side.patch, ij));
-            if !of_interest(side, on_triangle) {
+            if !of_interest(side, ends) {
                 continue;
             }
             let [a, b] = ends.map(|ij| vertices.of_grid_point(vertices.grid.number(mesh, side, ij)));
             let length = vertices.position(a).distance(vertices.position(b));
-            let front = problem.geometry.surface(side.triangle(mesh), on_triangle[0]).1;
+            let front = problem.geometry.surface(side.triangle(mesh), grid::on_triangle(mesh, side.patch, ends[0])).1;
             let normal = if side.back { -front } else { front };
             pieces.push(Piece { from: key(a).min(key(b)), to: key(a).max(key(b)), normal, length });
         }

@@ -1,8 +1,7 @@
 //! The vertices of the lit surface: grid points that are the same place on the same smooth surface, made one.
 
-use super::contacts::Contacts;
-use super::crease;
 use super::grid::{self, Grid};
+use super::{contacts, crease};
 use crate::Problem;
 use crate::math::weld::{self, Weld};
 use crate::mesh::Place;
@@ -30,7 +29,7 @@ impl Vertices {
         let grid = Grid::new(mesh);
         let (place_of_grid_point, normals, positions) = places(problem, &grid);
         let (mut of_grid_point, mut places) = split_at_creases(&place_of_grid_point, &normals, positions.len());
-        Contacts::new(problem).divide(problem, &grid, &place_of_grid_point, &mut of_grid_point, &mut places);
+        contacts::divide(problem, &grid, &place_of_grid_point, &mut of_grid_point, &mut places);
         let mut vertices = Vertices { grid, of_grid_point, positions, places, first: Vec::new(), touching: Vec::new() };
         let touched = |e: u32| vertices.of_element(problem, e).into_iter().map(move |v| (v, e));
         let pairs: Vec<(u32, u32)> = mesh.elements().flat_map(touched).collect();

@@ -1,6 +1,6 @@
 //! The segments in which other triangles touch or cross a triangle.
 
-use super::Plane;
+use super::flat::{Plane, Segment};
 use super::near::Near;
 use crate::scene::Scene;
 use glam::DVec2;
@@ -8,50 +8,45 @@ use glam::DVec2;
 /// Cosine of the angle from which surfaces that meet do not run smoothly into each other: 36 degrees, as in pictures.
 const CREASE: f64 = 0.809;
 
-/// Where a triangle is touched.
-#[derive(Debug)]
-pub struct Contacts {
-    /// Segments inside of it, end points not shared exactly [m].
-    pub inner: Vec<[DVec2; 2]>,
-    /// Whether something stands on each of its edges, all along.
-    pub borders: [bool; 3],
-}
-
-impl Contacts {
-    /// Contacts of triangle `t`, which lies in `plane`. Groups of segments that hang together count if they reach over `detail` [m].
-    pub fn of(scene: &Scene, t: u32, plane: &Plane, near: &Near, tolerance: f64, detail: f64) -> Contacts {
-        let (mut inner, mut on_edges) = (Vec::new(), [const { Vec::new() }; 3]);
-        let two_sided = scene.is_two_sided(t);
-        for other in near.of(t) {
-            let corners = scene.corners(other).map(|corner| corner.as_dvec3());
-            let heights = corners.map(|corner| plane.height(corner));
-            // What stands behind a one-sided surface is out of sight.
-            if !two_sided && heights.iter().all(|&height| height <= tolerance) {
-                continue;
-            }
-            let Some(segment) = meeting(heights, corners.map(|corner| plane.flat(corner)), tolerance) else { continue };
-            let Some(segment) = clipped(plane, segment, tolerance).filter(|[p, q]| p.distance(*q) > 4.0 * tolerance)
-            else {
-                continue;
-            };
-            match edge_along(plane, segment, 2.0 * tolerance) {
-                None => inner.push(segment),
-                Some(k) => {
-                    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-                    if normal.dot(plane.normal).abs() < CREASE {
-                        on_edges[k].push(segment);
-                    }
+/// Segments inside of triangle `t`, which lies in `plane`, with end points not shared exactly, and whether something stands on each of its edges, all
+/// along. Groups of segments that hang together count if they reach over `detail` [m].
+pub fn of_triangle(
+    scene: &Scene,
+    t: u32,
+    plane: &Plane,
+    near: &Near,
+    tolerance: f64,
+    detail: f64,
+) -> (Vec<Segment>, [bool; 3]) {
+    let whole = &plane.whole;
+    let (mut inner, mut on_edges) = (Vec::new(), [const { Vec::new() }; 3]);
+    let two_sided = scene.is_two_sided(t);
+    for other in near.of(t) {
+        let corners = scene.corners(other).map(|corner| corner.as_dvec3());
+        let heights = corners.map(|corner| plane.height(corner));
+        // What stands behind a one-sided surface is out of sight.
+        if !two_sided && heights.iter().all(|&height| height <= tolerance) {
+            continue;
+        }
+        let Some(segment) = meeting(heights, corners.map(|corner| plane.flat(corner)), tolerance) else { continue };
+        let is_long = |[p, q]: &Segment| p.distance(*q) > 4.0 * tolerance;
+        let Some(segment) = whole.clipped(segment, tolerance).filter(is_long) else { continue };
+        match whole.edge_along(segment, 2.0 * tolerance) {
+            None => inner.push(segment),
+            Some(k) => {
+                let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+                if normal.dot(plane.normal).abs() < CREASE {
+                    on_edges[k].push(segment);
                 }
             }
         }
-        let inner = large_groups(inner, 4.0 * tolerance, detail);
-        let borders = [0, 1, 2].map(|k| is_covered(plane.edge(k), &on_edges[k], 8.0 * tolerance));
-        Contacts { inner, borders }
     }
+    let inner = large_groups(inner, 4.0 * tolerance, detail);
+    (inner, [0, 1, 2].map(|k| whole.is_covered(k, &on_edges[k], 8.0 * tolerance)))
 }
 
 /// Where a triangle with these `heights` above the plane and `flat` positions meets it: an edge that lies in it, or a cut across.
-fn meeting(heights: [f64; 3], flat: [DVec2; 3], tolerance: f64) -> Option<[DVec2; 2]> {
+fn meeting(heights: [f64; 3], flat: [DVec2; 3], tolerance: f64) -> Option<Segment> {
     let is_on = heights.map(|height| height.abs() <= tolerance);
     let mut ends: Vec<DVec2> = (0..3).filter(|&k| is_on[k]).map(|k| flat[k]).collect();
     for k in 0..3 {
@@ -63,28 +58,8 @@ fn meeting(heights: [f64; 3], flat: [DVec2; 3], tolerance: f64) -> Option<[DVec2
     ends.try_into().ok()
 }
 
-/// The part of a segment that lies on the triangle of `plane`, or hardly beyond its borders: many lie along them.
-fn clipped(plane: &Plane, [p, q]: [DVec2; 2], tolerance: f64) -> Option<[DVec2; 2]> {
-    let (mut from, mut to) = (0.0f64, 1.0f64);
-    for k in 0..3 {
-        let (start, end) = (plane.off_edge(k, p), plane.off_edge(k, q));
-        match (start < -tolerance, end < -tolerance) {
-            _ if start.max(end) < -tolerance => return None,
-            (true, _) => from = from.max(start / (start - end)),
-            (_, true) => to = to.min(start / (start - end)),
-            (false, false) => {}
-        }
-    }
-    (from < to).then(|| [p.lerp(q, from), p.lerp(q, to)])
-}
-
-/// The edge of the triangle of `plane` along which a segment lies, if it does.
-fn edge_along(plane: &Plane, segment: [DVec2; 2], tolerance: f64) -> Option<usize> {
-    (0..3).find(|&k| segment.iter().all(|&point| plane.off_edge(k, point).abs() <= tolerance))
-}
-
 /// The segments of groups that hang together and reach over `detail`.
-fn large_groups(segments: Vec<[DVec2; 2]>, tolerance: f64, detail: f64) -> Vec<[DVec2; 2]> {
+fn large_groups(segments: Vec<Segment>, tolerance: f64, detail: f64) -> Vec<Segment> {
     let mut group: Vec<usize> = (0..segments.len()).collect();
     let mut ends: Vec<(DVec2, usize)> = (0..).zip(&segments).flat_map(|(k, s)| s.map(|end| (end, k))).collect();
     ends.sort_by(|(p, _), (q, _)| p.x.total_cmp(&q.x));
@@ -115,14 +90,4 @@ fn root(group: &[usize], mut k: usize) -> usize {
         k = group[k];
     }
     k
-}
-
-/// Whether `segments` along an edge leave no gap longer than `tolerance` on it.
-fn is_covered([a, b]: [DVec2; 2], segments: &[[DVec2; 2]], tolerance: f64) -> bool {
-    let (along, length) = ((b - a).normalize_or_zero(), a.distance(b));
-    let place = |point: DVec2| (point - a).dot(along);
-    let mut spans: Vec<(f64, f64)> = segments.iter().map(|s| s.map(place)).map(|[p, q]| (p.min(q), p.max(q))).collect();
-    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let covered = spans.iter().try_fold(0.0f64, |end, &(from, to)| (from <= end + tolerance).then(|| end.max(to)));
-    covered.is_some_and(|end| end >= length - tolerance)
 }

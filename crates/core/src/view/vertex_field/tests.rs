@@ -59,7 +59,7 @@ fn a_flat_wall_has_no_seam_where_divisions_differ() {
 #[test]
 fn a_flat_wall_has_no_seam_where_patches_are_bisected() {
     // Each triangle bisected unevenly; beside whole parts that are cut finer and coarser.
-    let (bisected, cells) = (Division::Bisected, Division::Cells);
+    let (bisected, cells) = (|from| Division::Bisected { from, share: 0.5 }, Division::Cells);
     let first = [bisected(0), bisected(1), cells(1), bisected(2), cells(2), cells(1), bisected(0), cells(4), cells(1)];
     let second = [bisected(1), cells(1), bisected(0), cells(2), bisected(1), bisected(2), cells(1), cells(1), cells(8)];
     let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: [first, second].concat(), leaders: Vec::new() };

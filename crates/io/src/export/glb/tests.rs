@@ -94,7 +94,7 @@ fn edges_between_different_divisions_share_all_vertices() {
 
 #[test]
 fn edges_of_bisected_patches_share_all_vertices() {
-    let (bisected, cells) = (Division::Bisected, Division::Cells);
+    let (bisected, cells) = (|from| Division::Bisected { from, share: 0.5 }, Division::Cells);
     let first = [bisected(0), bisected(1), cells(1), bisected(2), cells(2), cells(1), bisected(0), cells(4), cells(1)];
     let second = [bisected(1), cells(1), bisected(0), cells(2), bisected(1), bisected(2), cells(1), cells(1), cells(8)];
     let cut = Cut { slices: vec![Slices::WHOLE; 2], divisions: [first, second].concat(), leaders: Vec::new() };
