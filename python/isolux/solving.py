@@ -22,7 +22,7 @@ def solve(
     elements: float | None = None,
     max_edge: float | None = None,
     mesh: Literal["adaptive", "uniform"] | None = None,
-    contacts: bool = False,
+    contacts: bool | None = None,
     error: float | None = None,
     confidence: float = 0.95,
     error_of: str = "rms",
@@ -48,8 +48,9 @@ def solve(
         elements: pieces of surface that get one value each, about so many; 400,000 unless said otherwise (2000 for deterministic methods).
             Small triangles of smooth surfaces are put together.
         max_edge: instead, the longest edge of an element [m].
-        mesh: "adaptive" elements are small where the light changes, "uniform" ones equal, which they are unless said otherwise, and for little time.
-        contacts: whether elements are cut where others stand on them, so that no light passes below.
+        mesh: "adaptive" elements are small where the light changes; "uniform" ones are equal, as they are unless said otherwise, and for
+            little time.
+        contacts: whether elements are cut where others stand on them, so that no light passes below; they are unless said otherwise.
         error: goes on until the error is at most this share of the mean irradiance: 0.02 is two hundredths. `rays` and `time` limit it;
             if they are too little an `AccuracyWarning` says so.
         confidence: how sure that shall be: the share of all solves that keep it.
@@ -129,7 +130,7 @@ def _problem(
     if not isinstance(scene, Problem):
         native, left = request.problem(as_scene(scene)._native, cut, limits, threads)
         return Problem._of(native), left
-    if any(cut.values()):
+    if any(value is not None for value in cut.values()):
         raise ParameterError.of("elements", cut["elements"], "a Problem is cut into elements already: say so when it is made")
     return scene, limits
 

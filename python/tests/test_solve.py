@@ -42,6 +42,20 @@ def test_python_and_the_command_line_compute_the_same_bits(tmp_path: Path) -> No
     assert isolux.compare(own, theirs).rms == 0
 
 
+@pytest.mark.parametrize("contacts", ["cut", "ignore"])
+def test_a_mesh_that_follows_the_light_is_that_of_the_command_line(tmp_path: Path, contacts: str) -> None:
+    file = tmp_path / "a.isolux"
+    told = ["--elements", "2000", "--rays", "300k", "--mesh", "adaptive", "--contacts", contacts]
+    assert _native.run(["isolux", "solve", "cornell-box", "--quiet", "-o", str(file), *told]) == 0
+    own = isolux.solve("cornell-box", elements=2000, rays=3e5, mesh="adaptive", contacts=contacts == "cut")
+    assert len(own.areas) <= 2000 and own.areas.max() > 4 * np.median(own.areas)
+    assert (own.irradiance == isolux.open(file).irradiance).all()
+    with pytest.raises(isolux.ParameterError, match="mesh"):
+        isolux.solve("cornell-box", max_edge=0.1, mesh="adaptive")
+    with pytest.raises(isolux.UnknownName, match="adaptive"):
+        isolux.solve("cornell-box", mesh="fine")  # type: ignore[arg-type]
+
+
 def test_arrays_are_views_on_one_memory_that_nobody_can_change(cornell: isolux.Solution) -> None:
     n = len(cornell)
     for values, shape in [

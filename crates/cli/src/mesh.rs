@@ -29,8 +29,8 @@ enum AtContacts {
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct MeshArguments {
     /// Where something stands on a surface, or passes through it: cut elements along its foot, or ignore it. Cut, no light passes below, exactly;
-    /// ignored, up to some hundredths of it do
-    #[arg(long, value_name = "WHAT", default_value = "ignore")]
+    /// ignored, up to some hundredths of it do, and elements are equal
+    #[arg(long, value_name = "WHAT", default_value = "cut")]
     contacts: AtContacts,
 
     /// Where elements are small: uniform, the same everywhere, or adaptive, where the light changes (at the edges of shadows, beside lamps). The error

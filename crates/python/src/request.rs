@@ -72,7 +72,7 @@ struct Cut {
     elements: Option<u64>,
     max_edge: Option<f32>,
     mesh: Option<String>,
-    contacts: bool,
+    contacts: Option<bool>,
 }
 
 #[pymethods]
@@ -121,7 +121,7 @@ impl Request {
         let budget = limits.budget(&scene, self)?;
         let spread = named("mesh", cut.mesh, &Spread::ALL, Spread::name)?.unwrap_or_default();
         let resolution = self.chosen.resolution(cut.elements, cut.max_edge);
-        let (along_contacts, time, light) = (cut.contacts, limits.duration()?, self.light);
+        let (along_contacts, time, light) = (cut.contacts.unwrap_or(true), limits.duration()?, self.light);
         let wish = Wish { resolution, spread, along_contacts, budget, time, light };
         let is_interrupted = AtomicBool::new(false);
         let look = || py.check_signals().inspect_err(|_| is_interrupted.store(true, Ordering::Relaxed));

@@ -1,4 +1,4 @@
-//! Whole solves on uniform and on adaptive meshes: what is left of the error after the same number of rays, those that find the mesh included.
+//! Whole solves on uniform and on adaptive meshes, cut along contacts or not: what is left of the error after the same number of rays, those that find the mesh included.
 //!
 //! `mesh-solves [ELEMENTS]` (400,000, the default of `isolux solve`) prints a table. Errors are those of luminance irradiance against an independent renderer
 //! at points that are uniform over the visible surfaces: RMS in the mean irradiance of the points, and the median of the relative ones, of the element at
@@ -8,12 +8,10 @@
 #![allow(clippy::print_stdout)]
 
 use anyhow::{Context, Result};
-use isolux_core::adaptive::{Effort, follow_light};
+use isolux_core::adaptive::{Meshed, Spread, Wish};
 use isolux_core::mesh::Resolution;
 use isolux_core::run::run;
-use isolux_core::scene::Scene;
 use isolux_core::solvers::MonteCarlo;
-use isolux_core::solvers::budget::RAYS_PER_ELEMENT;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, Settings};
 use isolux_core::view::VertexField;
 use isolux_core::{Error, Problem, Solution};
@@ -25,6 +23,12 @@ use std::time::Instant;
 const ELEMENTS: u64 = 400_000;
 const ROOMS: [&str; 2] = ["living-room", "classroom"];
 const RAYS: [u64; 3] = [25, 100, 400];
+const MESHES: [(&str, Spread, bool); 4] = [
+    ("uniform", Spread::Uniform, false),
+    ("uniform, cut along contacts", Spread::Uniform, true),
+    ("adaptive", Spread::Adaptive, false),
+    ("adaptive, cut along contacts", Spread::Adaptive, true),
+];
 
 fn main() -> Result<()> {
     let elements = std::env::args().nth(1).map_or(Ok(ELEMENTS), |text| text.parse())?;
@@ -38,12 +42,15 @@ fn main() -> Result<()> {
         let scene = read_scene(&scenes.join(room).with_extension("glb"), &ImportOptions::default())?;
         let points = reference::read(&scenes.join("ref").join(room).with_extension("npz"))?.good;
         for share in RAYS {
-            for (name, is_adaptive) in [("uniform", false), ("adaptive", true)] {
+            for (name, spread, along_contacts) in MESHES {
                 let start = Instant::now();
-                let all = share * elements;
-                let (problem, taken) = mesh(&scene, elements, all, is_adaptive)?;
+                let budget = Budget::Rays(share * elements);
+                let (resolution, light) = (Resolution::Clustered(elements), LightPart::All);
+                let wish = Wish { resolution, spread, along_contacts, budget, time: None, light };
+                let Meshed { problem, budget, .. } =
+                    wish.cut::<Error>(scene.clone(), |_| Ok(()), |_| ControlFlow::Continue(()))?;
                 let meshed = start.elapsed().as_secs_f64();
-                let solution = solve(&problem, Settings { budget: Budget::Rays(all - taken), ..Settings::default() })?;
+                let solution = solve(&problem, Settings { budget, ..Settings::default() })?;
                 let solved = start.elapsed().as_secs_f64() - meshed;
                 let mut comparison = Comparison::new(points.clone(), &problem)?;
                 comparison.push(&problem, &solution, &VertexField::new(&problem, &solution));
@@ -54,16 +61,6 @@ fn main() -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// The mesh, and the rays that it took.
-fn mesh(scene: &Scene, elements: u64, rays: u64, is_adaptive: bool) -> Result<(Problem, u64), Error> {
-    if !is_adaptive {
-        return Ok((Problem::new(scene.clone(), Resolution::Clustered(elements))?, 0));
-    }
-    let effort = Effort { rays: rays.min(RAYS_PER_ELEMENT * elements), seed: 1, light: LightPart::All };
-    let found = follow_light(scene.clone(), elements, effort, |problem, settings| solve(problem, settings).map(Some))?;
-    Ok((found.problem, found.rays))
 }
 
 fn solve(problem: &Problem, settings: Settings) -> Result<Solution, Error> {
