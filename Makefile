@@ -13,7 +13,7 @@
 #   make study-methods            all methods on one scene, error and time
 #   make study-clusters           what elements of many triangles are worth, in two rooms
 #   make study-smoothing          what taking noise out gains, and its bias, in four rooms
-#   make study-mesh               what a mesh that follows the light gains, in three rooms
+#   make study-mesh               what a mesh that follows the light gains, in three rooms, and after whole solves in two
 
 ISOLUX = target/release/isolux
 
@@ -107,6 +107,7 @@ study-smoothing:
 
 study-mesh:
 	cargo run --release --locked -p isolux-testing --bin mesh
+	cargo run --release --locked -p isolux-testing --bin mesh-solves
 
 study-clusters:
 	cargo run --release --locked -p isolux-testing --bin clusters

@@ -44,8 +44,10 @@ use rayon::prelude::*;
 const PILOT: f64 = 0.25;
 /// Share of the whole work that the pilot may take.
 const SHARE: f64 = 0.08;
-/// Rays of an element for its direct light, as a share of those of the solve.
-const DIRECT: f64 = 0.12;
+/// Elements on which light is known, for each one of the mesh, more than triangles.
+const KNOWN: u64 = 2;
+/// Rays of one of them for its direct light, as a share of those of an element of the mesh.
+const DIRECT: f64 = 0.08;
 /// Fewest and most rays of an element for direct light.
 const FEWEST_RAYS: f64 = 4.0;
 const MOST_RAYS: f64 = 12.0;
@@ -99,8 +101,8 @@ pub fn follow_light<E: From<Error>>(
         return Ok(Followed { problem: Problem::new(scene, Resolution::Clustered(elements))?, rays: 0 });
     };
     let mut rays = solution.work.rays;
-    let fine = Resolution::Extra(elements).cut(&scene)?;
-    let known = pilot.clone().cut_anew(&fine)?;
+    let many = (Resolution::least(&scene) + KNOWN * elements).min(MOST_ELEMENTS);
+    let known = pilot.clone().cut_anew(&Resolution::Elements(many).cut(&scene)?)?;
     let indirect = Indirect::new(pilot, &solution);
     let mut irradiance: Vec<Rgb> = known.mesh.elements().into_par_iter().map(|e| indirect.on(&known, e)).collect();
     if effort.light == LightPart::All {
