@@ -6,7 +6,7 @@ use crate::progress::Display;
 use crate::terminal;
 use clap::ValueEnum;
 use isolux_core::Problem;
-use isolux_core::adaptive::{Meshed, Spread, Wish};
+use isolux_core::adaptive::{Meshed, PATIENCE, Spread, Wish};
 use isolux_core::mesh::Resolution;
 use isolux_core::scene::Scene;
 use std::ops::ControlFlow;
@@ -56,16 +56,18 @@ impl MeshArguments {
     }
 }
 
-/// Cuts `scene` as `wish` says. What `check` refuses is refused before the first ray.
+/// Cuts `scene` as `wish` says, equally if `time` for the whole solve is too short for anything else; and the time that it took to find out where
+/// the light changes. What `check` refuses is refused before the first ray.
 ///
 /// # Errors
 /// A failure for a longest edge of an adaptive mesh; those of the core and of `check`.
 pub fn cut(
     wish: Wish,
     scene: Scene,
+    time: Option<Duration>,
     display: &mut Display,
     check: impl Fn(&Problem) -> Result<(), Failure>,
-) -> Result<Meshed, Failure> {
+) -> Result<(Meshed, Duration), Failure> {
     if let (Spread::Adaptive, Resolution::MaxEdge(_)) = (wish.spread, wish.resolution) {
         let what = "--max-edge makes equal elements, and those of an adaptive mesh are not";
         return Err(Failure::usage(what).with_help("ask for --elements N, or leave out --mesh adaptive"));
@@ -73,18 +75,20 @@ pub fn cut(
     display.stage("cutting the surfaces into elements");
     let elements = wish.resolution.most(&scene).unwrap_or(0);
     let what = || format!("finding out where {} elements are needed", in_words(elements as f64));
-    let (start, mut next) = (Instant::now(), Duration::ZERO);
+    let (start, mut next, mut is_late) = (Instant::now(), Duration::ZERO, false);
     let meshed = wish.cut(scene, check, |progress| {
         let done = progress.rays as f64 / progress.rays_in_all.unwrap_or(1).max(1) as f64;
         display.work(done.min(1.0), &mut next, start, what);
         if done >= 1.0 {
             display.stage("making the mesh");
         }
-        ControlFlow::Continue(())
+        is_late = time.is_some_and(|time| start.elapsed() > time.mul_f64(PATIENCE));
+        if is_late { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
-    if meshed.was_short {
+    if is_late {
         display.clear();
         terminal::note("the time is too short to find out where the light changes: the elements are equal");
     }
-    Ok(meshed)
+    let took = if wish.spread == Spread::Adaptive { start.elapsed() } else { Duration::ZERO };
+    Ok((meshed, took))
 }

@@ -238,10 +238,9 @@ impl Solve {
             spread: self.mesh.spread(),
             along_contacts: self.mesh.along_contacts(),
             budget,
-            time: self.budget.time,
             light: self.solver.light(),
         };
-        let Meshed { problem, budget, took, .. } = mesh::cut(wish, scene, display, check)?;
+        let (Meshed { problem, budget }, took) = mesh::cut(wish, scene, self.budget.time, display, check)?;
         let solver = self.solver.solver(&chosen, &problem, budget)?;
         Ok(Checkpoint { problem, solver, clock: Clock { solved: took, limit: self.budget.time } })
     }

@@ -6,7 +6,7 @@ use crate::problem::Problem;
 use crate::scene::Scene;
 use crate::solve::Limits;
 use isolux_core::Error;
-use isolux_core::adaptive::{Meshed, Spread, Wish};
+use isolux_core::adaptive::{Meshed, PATIENCE, Spread, Wish};
 use isolux_core::choice::{Choice, TableEntry};
 use isolux_core::sampling::address::Address;
 use isolux_core::solvers::monte_carlo::LightPart;
@@ -16,6 +16,7 @@ use isolux_core::transport::Leaving;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// A method with what it is told.
 #[pyclass(frozen, module = "isolux._native")]
@@ -121,18 +122,21 @@ impl Request {
         let budget = limits.budget(&scene, self)?;
         let spread = named("mesh", cut.mesh, &Spread::ALL, Spread::name)?.unwrap_or_default();
         let resolution = self.chosen.resolution(cut.elements, cut.max_edge);
-        let (along_contacts, time, light) = (cut.contacts.unwrap_or(true), limits.duration()?, self.light);
-        let wish = Wish { resolution, spread, along_contacts, budget, time, light };
+        let (along_contacts, light) = (cut.contacts.unwrap_or(true), self.light);
+        let wish = Wish { resolution, spread, along_contacts, budget, light };
+        let (time, start) = (limits.duration()?, Instant::now());
+        let is_late = || time.is_some_and(|time| start.elapsed() > time.mul_f64(PATIENCE));
         let is_interrupted = AtomicBool::new(false);
         let look = || py.check_signals().inspect_err(|_| is_interrupted.store(true, Ordering::Relaxed));
         let work = || -> Result<Meshed, Error> {
             let check = |problem: &isolux_core::Problem| self.chosen.solver(problem, budget, None).map(drop);
-            wish.cut(scene, check, |_| match is_interrupted.load(Ordering::Relaxed) {
+            wish.cut(scene, check, |_| match is_interrupted.load(Ordering::Relaxed) || is_late() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             })
         };
-        let Meshed { problem, budget, took, .. } = in_background(py, threads, look, work)??;
+        let Meshed { problem, budget } = in_background(py, threads, look, work)??;
+        let took = if spread == Spread::Adaptive { start.elapsed() } else { Duration::ZERO };
         Ok((Problem::new(problem), limits.left(budget, took)))
     }
 }

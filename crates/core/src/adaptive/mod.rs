@@ -24,7 +24,7 @@ mod merge;
 mod samples;
 mod wish;
 
-pub use self::wish::{Meshed, Spread, Wish};
+pub use self::wish::{Meshed, PATIENCE, Spread, Wish};
 
 use self::borders::Borders;
 use self::counts::Counts;

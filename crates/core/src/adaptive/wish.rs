@@ -1,7 +1,7 @@
 //! The mesh that a solve gets: elements that follow the light, or equal ones, and what is left of its budget.
 //!
 //! The same scene, elements and part of the light make the same mesh, whatever else is asked for, so that solutions can be merged and compared; but
-//! for few rays, of which finding it takes a quarter, and little time, in which elements are equal.
+//! for few rays, of which finding it takes a quarter, and where whoever watches has no time for it: then elements are equal.
 
 use super::{Effort, Followed, follow_light};
 use crate::mesh::{ElementMesh, Resolution};
@@ -9,15 +9,14 @@ use crate::run::run;
 use crate::scene::{Contacts, Scene};
 use crate::solvers::Progress;
 use crate::solvers::budget::{self, RAYS_PER_ELEMENT};
-use crate::solvers::monte_carlo::{Budget, LightPart, MonteCarlo, Settings};
-use crate::{Error, Problem, Solution};
+use crate::solvers::monte_carlo::{Budget, LightPart, MonteCarlo};
+use crate::{Error, Problem};
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
 
 /// Seed of what finds the mesh: it does not depend on that of the solve, so that solves of several seeds can be merged.
 const SEED: u64 = 0x6d65_7368;
-/// Share of the time that the pilot may take; all of the mesh takes some four times as long.
-const PATIENCE: f64 = 0.04;
+/// Share of the time for a solve that what is watched of [`Wish::cut`] should take at most; all of it takes some four times as long.
+pub const PATIENCE: f64 = 0.04;
 
 /// How elements are spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,8 +47,6 @@ pub struct Wish {
     /// Whether elements are cut along what stands on them.
     pub along_contacts: bool,
     pub budget: Budget,
-    /// Of the whole solve, if it is limited.
-    pub time: Option<Duration>,
     pub light: LightPart,
 }
 
@@ -57,10 +54,6 @@ pub struct Wish {
 pub struct Meshed {
     pub problem: Problem,
     pub budget: Budget,
-    /// Time that it took to find an adaptive one.
-    pub took: Duration,
-    /// Whether elements are equal because the time is too short for others.
-    pub was_short: bool,
 }
 
 impl Wish {
@@ -82,7 +75,7 @@ impl Wish {
         let Some(elements) = elements else {
             let cut = self.resolution.cut_along(&scene, &contacts)?;
             let problem = Problem::with_cut(scene, &cut)?;
-            return Ok(Meshed { problem, budget: self.budget, took: Duration::ZERO, was_short: false });
+            return Ok(Meshed { problem, budget: self.budget });
         };
         // As many rays as equal elements would get.
         let budget = match self.budget {
@@ -93,19 +86,19 @@ impl Wish {
         let rays = most_rays(budget).filter(|&rays| rays < enough / 2).unwrap_or(enough);
         let effort = Effort { rays, seed: SEED, light: self.light };
         let before_contacts = self.resolution.most_before(&scene, &contacts)?.unwrap_or(elements);
-        let (start, mut was_short) = (Instant::now(), false);
         let Followed { problem, rays } = follow_light(scene, before_contacts, effort, |problem, settings| {
             check(problem)?;
-            let is_late = |start: Instant| self.time.is_some_and(|time| start.elapsed() > time.mul_f64(PATIENCE));
-            let solution = solve(problem, settings, |progress| {
-                was_short |= is_late(start);
-                if was_short { ControlFlow::Break(()) } else { watch(progress) }
-            })?;
-            Ok::<_, E>(Some(solution).filter(|_| !was_short))
+            let mut goes_on = true;
+            let solution = run(&mut MonteCarlo::new(problem, settings)?, problem, |progress| {
+                let next = watch(progress);
+                goes_on &= next.is_continue();
+                next
+            });
+            Ok::<_, E>(Some(solution).filter(|_| goes_on))
         })?;
         let cut = problem.mesh.cut().along(&problem.scene, &contacts, elements);
         let problem = problem.cut_anew(&cut)?;
-        Ok(Meshed { problem, budget: taken_off(budget, rays), took: start.elapsed(), was_short })
+        Ok(Meshed { problem, budget: taken_off(budget, rays) })
     }
 
     /// How many adaptive elements there shall be; `None` if they shall be equal.
@@ -120,14 +113,6 @@ impl Wish {
             (Spread::Adaptive, resolution) => Ok(resolution.most(scene)),
         }
     }
-}
-
-fn solve(
-    problem: &Problem,
-    settings: Settings,
-    mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
-) -> Result<Solution, Error> {
-    Ok(run(&mut MonteCarlo::new(problem, settings)?, problem, |progress| watch(progress)))
 }
 
 /// Rays that `budget` allows, if it says so.
