@@ -1,8 +1,8 @@
 // Clusters: points that lie in one cell of a grid and can become one of them (Rossignac & Borrel 1993).
 
 import { PIECE, type Pieces } from "./pieces";
-import { hash } from "./weld";
-import { NONE, type Wedges } from "./wedges";
+import { hash, NONE } from "./weld";
+import type { Wedges } from "./wedges";
 
 /** How far a point may stray from its surface when it becomes another, in cells. */
 const STRAY = 0.15;

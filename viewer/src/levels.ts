@@ -6,7 +6,8 @@
 
 import { cluster } from "./clusters";
 import { PIECE, type Pieces } from "./pieces";
-import { NONE, Wedges } from "./wedges";
+import { NONE } from "./weld";
+import { Wedges } from "./wedges";
 
 /** So many triangles are few enough. */
 const FEWEST = 12_000;

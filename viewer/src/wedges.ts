@@ -4,11 +4,10 @@
 // A wedge faces along its normal. Where its surface ends it has a rim, too: the direction in which the end runs on, with the surface on the left.
 
 import { PIECE, type Pieces } from "./pieces";
-import { points, smoothSurfaces } from "./weld";
+import { NONE, points, smoothSurfaces } from "./weld";
 
-export const NONE = -1;
 /** How far apart directions that are alike may be, squared: 45 degrees. */
-const ALIKE = 0.59;;
+const ALIKE = 0.59;
 /** A surface ends at a point if the edges about it leave open as much as this, in the root of twice the area between them. */
 const GAP = 0.05;
 

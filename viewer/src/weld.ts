@@ -2,7 +2,8 @@
 
 import { PIECE, type Pieces } from "./pieces";
 
-const NONE = -1;
+/** No number. */
+export const NONE = -1;
 
 /** The smooth surface of every vertex: vertices that triangles join have the same number, that of one of them. */
 export function* smoothSurfaces(vertices: number, indices: Uint32Array): Pieces<Uint32Array> {

@@ -161,13 +161,8 @@ impl Limits {
 
     /// What is left after cutting took some of the time, and of the rays all but what the `budget` has.
     pub fn left(self, budget: Budget, took: Duration) -> Limits {
-        let rays = match budget {
-            Budget::Rays(rays) => Some(rays),
-            Budget::Accuracy { most_rays, .. } => most_rays,
-            Budget::Heuristic | Budget::Endless => None,
-        };
         let time = self.time.map(|time| (time - took.as_secs_f64()).max(1e-3));
-        Limits { rays, time, ..self }
+        Limits { rays: budget.most_rays(), time, ..self }
     }
 }
 

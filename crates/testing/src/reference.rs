@@ -201,6 +201,20 @@ impl Comparison {
         (0..self.points.len()).map(value)
     }
 
+    /// RMS error of luminance irradiance over all points and runs, in the mean of the reference, and median relative error.
+    pub fn errors(&self, of: Value) -> (f64, f64) {
+        let exact: Vec<f64> = self.points.iter().map(|point| point.irradiance.value[LUMINANCE]).collect();
+        let differences: Vec<(f64, f64)> = (0..self.runs.len())
+            .flat_map(|run| self.luminances(run, of).zip(&exact).map(|(value, exact)| (value - exact, *exact)))
+            .collect();
+        let count = differences.len() as f64;
+        let mean = differences.iter().map(|(_, exact)| exact).sum::<f64>() / count;
+        let rms = (differences.iter().map(|(error, _)| error * error).sum::<f64>() / count).sqrt();
+        let mut relative: Vec<f64> = differences.iter().map(|(error, exact)| (error / exact).abs()).collect();
+        relative.sort_by(f64::total_cmp);
+        (rms / mean, relative[relative.len() / 2])
+    }
+
     /// Ratio of the means over the points to which `belongs` says yes.
     pub fn ratio(&self, of: Value, channel: usize, belongs: impl Fn(&Point) -> bool) -> Ratio {
         let chosen: Vec<usize> = (0..self.points.len()).filter(|&i| belongs(&self.points[i])).collect();

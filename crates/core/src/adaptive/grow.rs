@@ -25,7 +25,7 @@ pub struct Node {
     pub error: f32,
     /// Its first half, or [`LEAF`].
     pub first: u32,
-    /// The corner from which it would be bisected.
+    /// The corner from which it is bisected.
     pub from: u8,
 }
 

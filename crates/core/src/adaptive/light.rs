@@ -96,7 +96,7 @@ impl Light<'_> {
         let field = VertexField::draft(problem, irradiance, None);
         let mut light = Light { problem, field, elements, triangles: Vec::new() };
         let on = |t: u32| {
-            let (mean, variance) = Samples::of_moments(&light, t).mean_and_variance();
+            let (mean, variance) = Samples::for_moments(&light, t).mean_and_variance();
             OnTriangle { mean, error: surface_area(&problem.scene, t) as f32 * variance }
         };
         light.triangles = (0..light.elements.len() as u32).into_par_iter().map(on).collect();

@@ -28,7 +28,7 @@ impl Samples {
     }
 
     /// On a whole triangle, so few as mean and variance need.
-    pub fn of_moments(light: &Light, triangle: u32) -> Samples {
+    pub fn for_moments(light: &Light, triangle: u32) -> Samples {
         // On a single element light is linear, and four samples have its mean and its variance exactly.
         let is_linear = light.elements_on(triangle) == 1;
         if is_linear { Samples::along(light, triangle, WHOLE, 2) } else { Samples::of_triangle(light, triangle) }

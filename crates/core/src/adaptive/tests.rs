@@ -1,7 +1,7 @@
 use super::borders::Borders;
 use super::forest::Leaf;
 use super::*;
-use crate::mesh::cells;
+use crate::mesh::{cells, surface_area};
 use crate::sampling::SequenceName;
 use crate::scene::builtin::builtin;
 use crate::solution::Work;
@@ -214,4 +214,24 @@ fn indirect_light_alone_takes_no_direct_light() {
     let indirect = Effort { light: LightPart::Indirect, ..EFFORT };
     assert_eq!(follow_light(scene.clone(), 4000, indirect, pilot).unwrap().rays, 7);
     assert!(follow_light(scene, 4000, EFFORT, pilot).unwrap().rays > 4000);
+}
+
+#[test]
+fn a_triangle_with_one_element_has_the_moments_of_linear_light() {
+    let problem = Problem::new(builtin("cubes").unwrap(), Resolution::Elements(1)).unwrap();
+    let irradiance: Vec<Rgb> = problem.mesh.elements().map(|e| Rgb::grey(pool(middle(&problem, e)))).collect();
+    let light = Light::new(&problem, &irradiance);
+    let mut uneven = 0;
+    for t in 0..light.triangles() {
+        // The integral of (E - mean)² of what is linear between three corners is A/12 times the sum over these.
+        let corners = [Vec2::ZERO, Vec2::X, Vec2::Y].map(|corner| light.at(t, corner)[0]);
+        let mean = corners.iter().sum::<f32>() / 3.0;
+        let square: f32 = corners.iter().map(|light| (light - mean).powi(2)).sum();
+        let error = surface_area(&problem.scene, t) as f32 * square / 12.0;
+        let on = light.on(t);
+        assert!((on.mean[0] - mean).abs() < 1e-4 * mean.max(1.0), "{t}: {} {mean}", on.mean[0]);
+        assert!((on.error - error).abs() < 1e-3 * error.max(1e-3), "{t}: {} {error}", on.error);
+        uneven += usize::from(error > 1.0);
+    }
+    assert!(uneven > 4, "{uneven}");
 }

@@ -83,7 +83,7 @@ impl Wish {
             budget => budget,
         };
         let enough = RAYS_PER_ELEMENT.saturating_mul(elements);
-        let rays = most_rays(budget).filter(|&rays| rays < enough / 2).unwrap_or(enough);
+        let rays = budget.most_rays().filter(|&rays| rays < enough / 2).unwrap_or(enough);
         let effort = Effort { rays, seed: SEED, light: self.light };
         let before_contacts = self.resolution.most_before(&scene, &contacts)?.unwrap_or(elements);
         let Followed { problem, rays } = follow_light(scene, before_contacts, effort, |problem, settings| {
@@ -96,9 +96,12 @@ impl Wish {
             });
             Ok::<_, E>(Some(solution).filter(|_| goes_on))
         })?;
+        let budget = taken_off(budget, rays);
+        if contacts.triangles.is_empty() {
+            return Ok(Meshed { problem, budget });
+        }
         let cut = problem.mesh.cut().along(&problem.scene, &contacts, elements);
-        let problem = problem.cut_anew(&cut)?;
-        Ok(Meshed { problem, budget: taken_off(budget, rays) })
+        Ok(Meshed { problem: problem.cut_anew(&cut)?, budget })
     }
 
     /// How many adaptive elements there shall be; `None` if they shall be equal.
@@ -112,15 +115,6 @@ impl Wish {
             }),
             (Spread::Adaptive, resolution) => Ok(resolution.most(scene)),
         }
-    }
-}
-
-/// Rays that `budget` allows, if it says so.
-fn most_rays(budget: Budget) -> Option<u64> {
-    match budget {
-        Budget::Rays(rays) => Some(rays),
-        Budget::Accuracy { most_rays, .. } => most_rays,
-        Budget::Heuristic | Budget::Endless => None,
     }
 }
 

@@ -37,8 +37,9 @@ const MOST_DIVISIONS: f64 = 30_000.0;
 
 /// Meshes with clusters have at least this share of the elements that were asked for, if they can.
 const CLOSE: f64 = 0.998;
-/// So many guesses at the length of their edges, before it is bisected.
+/// So many guesses at the length of their edges, before it is bisected so often.
 const GUESSES: u32 = 6;
+const STEPS: u32 = 14;
 
 impl Resolution {
     /// Number of the sides of all triangles of `scene`, the fewest elements there can be.
@@ -138,7 +139,7 @@ fn cut_with_clusters(scene: &Scene, target: u64) -> Result<Cut, Error> {
     let (mut best, mut last) = (None, None);
     let aim = 0.5 * (1.0 + CLOSE) * target as f64;
     let mut edge = f64::from(Resolution::Clustered(target).typical_edge(scene));
-    for step in 0..GUESSES + 14 {
+    for step in 0..GUESSES + STEPS {
         let cut = clustered(edge);
         let count = cut.element_count(scene).map_or(MOST_ELEMENTS, |count| count as u64);
         if count > target {

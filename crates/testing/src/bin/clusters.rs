@@ -15,7 +15,7 @@ use isolux_core::solvers::MonteCarlo;
 use isolux_core::solvers::monte_carlo::{Budget, Settings};
 use isolux_core::view::VertexField;
 use isolux_io::import::{ImportOptions, read_scene};
-use isolux_testing::reference::{self, Comparison, LUMINANCE, Value};
+use isolux_testing::reference::{self, Comparison, Value};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -50,7 +50,7 @@ fn main() -> Result<()> {
                 let solution = run(&mut solver, &problem, |_| ControlFlow::Continue(()));
                 comparison.push(&problem, &solution, &VertexField::new(&problem, &solution));
             }
-            let [element, shown] = Value::ALL.map(|of| errors(&comparison, of));
+            let [element, shown] = Value::ALL.map(|of| comparison.errors(of));
             println!(
                 "{room},{resolution:?},{},{rays},{:.4},{:.4},{:.4},{:.4}",
                 problem.mesh.len(),
@@ -62,18 +62,4 @@ fn main() -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// RMS error over all points and runs, in the mean of the reference, and median relative error.
-fn errors(comparison: &Comparison, of: Value) -> (f64, f64) {
-    let exact: Vec<f64> = comparison.points.iter().map(|point| point.irradiance.value[LUMINANCE]).collect();
-    let differences: Vec<(f64, f64)> = (0..SEEDS.count())
-        .flat_map(|run| comparison.luminances(run, of).zip(&exact).map(|(value, exact)| (value - exact, *exact)))
-        .collect();
-    let count = differences.len() as f64;
-    let mean = differences.iter().map(|(_, exact)| exact).sum::<f64>() / count;
-    let rms = (differences.iter().map(|(error, _)| error * error).sum::<f64>() / count).sqrt();
-    let mut relative: Vec<f64> = differences.iter().map(|(error, exact)| (error / exact).abs()).collect();
-    relative.sort_by(f64::total_cmp);
-    (rms / mean, relative[relative.len() / 2])
 }

@@ -16,7 +16,7 @@ use isolux_core::solvers::monte_carlo::{Budget, LightPart, Settings};
 use isolux_core::view::VertexField;
 use isolux_core::{Error, Problem, Solution};
 use isolux_io::import::{ImportOptions, read_scene};
-use isolux_testing::reference::{self, Comparison, LUMINANCE, Value};
+use isolux_testing::reference::{self, Comparison, Value};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -54,8 +54,8 @@ fn main() -> Result<()> {
                 let solved = start.elapsed().as_secs_f64() - meshed;
                 let mut comparison = Comparison::new(points.clone(), &problem)?;
                 comparison.push(&problem, &solution, &VertexField::new(&problem, &solution));
-                let errors = Value::ALL.map(|of| errors(&comparison, of));
-                let percent = errors.as_flattened().iter().map(|x| format!("{:.2} %", 100.0 * x)).collect::<Vec<_>>();
+                let errors = Value::ALL.map(|of| comparison.errors(of));
+                let percent = errors.map(|(rms, median)| format!("{:.2} % | {:.2} %", 100.0 * rms, 100.0 * median));
                 println!("| {room} | {share} | {name} | {} | {meshed:.1} s | {solved:.1} s |", percent.join(" | "));
             }
         }
@@ -65,15 +65,4 @@ fn main() -> Result<()> {
 
 fn solve(problem: &Problem, settings: Settings) -> Result<Solution, Error> {
     Ok(run(&mut MonteCarlo::new(problem, settings)?, problem, |_| ControlFlow::Continue(())))
-}
-
-/// RMS error in the mean of the reference, and median relative error.
-fn errors(comparison: &Comparison, of: Value) -> [f64; 2] {
-    let exact = || comparison.points.iter().map(|point| point.irradiance.value[LUMINANCE]);
-    let mut off: Vec<f64> = comparison.luminances(0, of).zip(exact()).map(|(value, exact)| value - exact).collect();
-    let mean = exact().sum::<f64>() / off.len() as f64;
-    let rms = (off.iter().map(|off| off * off).sum::<f64>() / off.len() as f64).sqrt() / mean;
-    off.iter_mut().zip(exact()).for_each(|(off, exact)| *off = (*off / exact).abs());
-    off.sort_by(f64::total_cmp);
-    [rms, off[off.len() / 2]]
 }

@@ -58,6 +58,9 @@ impl Resolution {
     /// # Errors
     /// Those of [`Resolution::cut`].
     pub fn most_before(self, scene: &Scene, contacts: &Contacts) -> Result<Option<u64>, Error> {
+        if contacts.triangles.is_empty() {
+            return Ok(self.most(scene));
+        }
         let whole = self.cut(scene)?;
         let (before, after) =
             (whole.element_count(scene)?, whole.along(scene, contacts, u64::MAX).element_count(scene)?);

@@ -85,6 +85,15 @@ impl Budget {
         if let Budget::Rays(rays) = self { Some(rays) } else { None }
     }
 
+    /// The most rays that it allows, if it says so.
+    pub fn most_rays(self) -> Option<u64> {
+        match self {
+            Budget::Rays(rays) => Some(rays),
+            Budget::Accuracy { most_rays, .. } => most_rays,
+            Budget::Heuristic | Budget::Endless => None,
+        }
+    }
+
     /// The accuracy that is asked for, if one is.
     pub fn accuracy(self) -> Option<Accuracy> {
         if let Budget::Accuracy { accuracy, .. } = self { Some(accuracy) } else { None }
