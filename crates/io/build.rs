@@ -1,9 +1,12 @@
 //! Puts the built page of the viewer (`viewer/dist/viewer.html`) into the program, if it is there.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 fn main() -> std::io::Result<()> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../viewer/dist");
+    // Asked for when it runs: the program that this is may have been compiled before the sources moved elsewhere.
+    let here =
+        std::env::var_os("CARGO_MANIFEST_DIR").ok_or_else(|| std::io::Error::other("cargo sets CARGO_MANIFEST_DIR"))?;
+    let folder = PathBuf::from(here).join("../../viewer/dist");
     if folder.is_dir() {
         println!("cargo::rerun-if-changed={}", folder.display());
     } else {
