@@ -80,25 +80,55 @@ impl ElementMesh {
     }
 
     /// Second stage, for points of any triangles: into `front` the element on the front, and into `further` by how much the number
-    /// of the one on the back, if there is any, is greater. Where a patch is divided x and y become those of its part. Patches without
-    /// a meaning have some elements.
+    /// of the one on the back, if there is any, is greater. Where a patch is divided it becomes its part, and x and y those on that.
+    /// Patches without a meaning have some elements.
     #[inline(always)]
-    pub fn fronts_at(&self, patch: &[u32], [x, y]: [&mut [f32]; 2], front: &mut [u32], further: &mut [u32]) {
-        let within = x.iter_mut().zip(&mut *y);
-        for (((front, further), &patch), (x, y)) in front.iter_mut().zip(&mut *further).zip(patch).zip(within) {
-            let mut found = self.patches.get(patch as usize);
-            while let Some(divided) = found.filter(|patch| patch.is_divided()) {
-                let (part, uv) = divided.part_at(Vec2::new(*x, *y));
-                (*x, *y) = (uv.x, uv.y);
-                found = self.patches.get(part as usize);
-            }
-            (*front, *further) = found.map_or((0, 1), |patch| (patch.first, u32::from(patch.divisions)));
+    pub fn fronts_at(&self, patch: &mut [u32], [x, y]: [&mut [f32]; 2], front: &mut [u32], further: &mut [u32]) {
+        if self.firsts(patch, front, further) {
+            self.go_down(patch, [&mut *x, &mut *y], further);
+            self.firsts(patch, front, further);
         }
         let out = front.as_chunks_mut::<LANES>().0.iter_mut().zip(further.as_chunks_mut::<LANES>().0);
         for ((x, y), (front, further)) in x.as_chunks::<LANES>().0.iter().zip(y.as_chunks::<LANES>().0).zip(out) {
             let m: [u16; LANES] = further.map(|divisions| divisions as u16);
             let cell: [u32; LANES] = from_fn(|k| cells::at(Vec2::new(x[k], y[k]), m[k]));
             (*front, *further) = (from_fn(|k| front[k] + cell[k]), m.map(cells::count));
+        }
+    }
+
+    /// The first element of each patch, or its first part, and its divisions; whether any patch is divided.
+    #[inline(always)]
+    fn firsts(&self, patch: &[u32], front: &mut [u32], further: &mut [u32]) -> bool {
+        let mut any_is_divided = false;
+        for ((front, further), &patch) in front.iter_mut().zip(further).zip(patch) {
+            let found = self.patches.get(patch as usize);
+            (*front, *further) = found.map_or((0, 1), |patch| (patch.first, u32::from(patch.divisions)));
+            any_is_divided |= found.is_some_and(Patch::is_divided);
+        }
+        any_is_divided
+    }
+
+    /// From the patches of points to those parts of them that are not divided, all of them one level at a time: then the processor waits
+    /// for many parts at once. `waiting` is room for the numbers of those points that are not there yet.
+    #[inline(always)]
+    fn go_down(&self, patch: &mut [u32], [x, y]: [&mut [f32]; 2], waiting: &mut [u32]) {
+        let is_divided = |patch: u32| self.patches.get(patch as usize).is_some_and(Patch::is_divided);
+        let mut count = 0;
+        // All are written down, and those that are there written over: no branch, for it would be guessed wrong.
+        for (k, &patch) in (0..).zip(&*patch) {
+            waiting[count] = k;
+            count += usize::from(is_divided(patch));
+        }
+        while count > 0 {
+            let mut left = 0;
+            for i in 0..count {
+                let k = waiting[i] as usize;
+                let (part, uv) = self.patches[patch[k] as usize].part_at(Vec2::new(x[k], y[k]));
+                (patch[k], x[k], y[k]) = (part, uv.x, uv.y);
+                waiting[left] = k as u32;
+                left += usize::from(is_divided(part));
+            }
+            count = left;
         }
     }
 }
@@ -144,7 +174,7 @@ mod tests {
             let v: [f32; 24] = from_fn(|k| ((triangle as usize + k) as f32 * 0.414_214).fract() * (1.0 - u[k]));
             let ([mut patch, mut front, mut further], [mut x, mut y]) = ([[0; 24]; 3], [[0.0; 24]; 2]);
             mesh.patches_at(triangle, [&u, &v], &mut patch, [&mut x, &mut y]);
-            mesh.fronts_at(&patch, [&mut x, &mut y], &mut front, &mut further);
+            mesh.fronts_at(&mut patch, [&mut x, &mut y], &mut front, &mut further);
             let lookup = mesh.lookup(triangle);
             same += (0..24).filter(|&k| lookup.front(Vec2::new(u[k], v[k])) == (front[k], further[k])).count();
         }
