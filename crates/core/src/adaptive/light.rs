@@ -19,6 +19,8 @@ use rayon::prelude::*;
 
 /// Elements that are computed in turn.
 const PIECE: usize = 256;
+/// Light below this share of the mean counts as it is, above by its logarithm.
+const DIM: f64 = 0.5;
 
 /// Light that changes slowly, of a pilot.
 pub struct Indirect {
@@ -53,6 +55,28 @@ pub fn direct(problem: &Problem, rays: Rays, seed: u64) -> (Vec<Rgb>, u64) {
     let pieces: Vec<Vec<(Rgb, u64)>> = elements.par_chunks(PIECE).map(piece).collect();
     let traced = pieces.iter().flatten().map(|(_, rays)| rays).sum();
     (pieces.into_iter().flatten().map(|(light, _)| light).collect(), traced)
+}
+
+/// How much light counts: `E₀ ln (1 + E / E₀)`, where E₀ is [`DIM`] of the mean. So it is with brightness (Fechner 1860), and so it pays: in a lamp light is a
+/// thousand times what it is in the room, and elements without end would go there, each with noise of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Brightness {
+    /// E₀ [lux].
+    dim: f32,
+}
+
+impl Brightness {
+    /// Where there is this `irradiance` [lux] on the elements of `problem`.
+    pub fn among(problem: &Problem, irradiance: &[Rgb]) -> Brightness {
+        let mesh = &problem.mesh;
+        let flux = |e: u32| f64::from(mesh.area(e)) * irradiance[e as usize].luminance_f64();
+        Brightness { dim: (DIM * mesh.elements().map(flux).sum::<f64>() / mesh.total_area()) as f32 }
+    }
+
+    /// That of so many `lux`.
+    pub fn of(self, lux: f32) -> f32 {
+        if self.dim > 0.0 { self.dim * (lux.max(0.0) / self.dim).ln_1p() } else { 0.0 }
+    }
 }
 
 /// The same numbers for every element.

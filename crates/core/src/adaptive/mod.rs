@@ -8,8 +8,8 @@
 //! error of a patch    ∫ (E - mean E)² dA
 //! ```
 //!
-//! E is known before, well enough ([`light`]): direct light of every element of a uniform mesh, with the same random numbers in all, and indirect
-//! light of a *pilot*, a quick solution on large elements. Where triangles are smaller than elements should be they are put together ([`merge`]), up to the same
+//! where E is the brightness of light ([`light::Brightness`]), which is known before, well enough: direct light of every element of a uniform mesh, with the
+//! same random numbers in all, and indirect light of a *pilot*, a quick solution on large elements. Where triangles are smaller than elements should be they are put together ([`merge`]), up to the same
 //! error. [`grow`] says where to bisect, by [`samples`] of the light, [`forest`] keeps the patches, [`counts`] tells how large the error is with so many elements, [`balance`] keeps neighbours
 //! within one level of each other. What a mesh becomes depends on the light alone, not on textures, and is always the same for the same effort.
 //! Cost: a quarter of the rays of a solve, and some 20 microseconds an element.
@@ -30,7 +30,7 @@ use self::borders::Borders;
 use self::counts::Counts;
 use self::forest::Forest;
 use self::grow::Rule;
-use self::light::{Indirect, Light};
+use self::light::{Brightness, Indirect, Light};
 use self::merge::Merges;
 use crate::math::Rgb;
 use crate::mesh::{Cut, MOST_ELEMENTS, Resolution};
@@ -137,7 +137,9 @@ impl Effort {
 /// # Errors
 /// [`Error::TooManyElements`].
 pub fn adapt(problem: &Problem, irradiance: &[Rgb], elements: u64) -> Result<Cut, Error> {
-    let light = Light::new(problem, irradiance);
+    let brightness = Brightness::among(problem, irradiance);
+    let bright: Vec<Rgb> = irradiance.iter().map(|light| Rgb::grey(brightness.of(light.luminance()))).collect();
+    let light = Light::new(problem, &bright);
     let borders = Borders::of(&problem.scene, problem.geometry.as_ref());
     let mut largest = LARGEST;
     loop {

@@ -79,11 +79,21 @@ fn the_error_of_equal_numbers_of_elements_is_halved() {
 #[test]
 fn elements_have_equal_errors_where_the_light_is_smooth() {
     let (problem, irradiance) = lit("cubes", 40_000, pool);
-    let adaptive = adapted(&problem, &irradiance, 10_000);
-    let mut errors = errors(&adaptive, pool);
+    let brightness = Brightness::among(&problem, &irradiance);
+    let mut errors = errors(&adapted(&problem, &irradiance, 10_000), |p| brightness.of(pool(p)));
     errors.sort_by(f32::total_cmp);
     let quantile = |q: f64| errors[(q * (errors.len() - 1) as f64) as usize];
     assert!(quantile(0.9) < 8.0 * quantile(0.4), "{} {}", quantile(0.4), quantile(0.9));
+}
+
+#[test]
+fn bright_light_counts_by_its_logarithm_and_dim_light_in_full() {
+    let (problem, irradiance) = lit("cubes", 400, |_| 50.0);
+    let brightness = Brightness::among(&problem, &irradiance);
+    assert!((brightness.of(0.1) - 0.1).abs() < 1e-3 && brightness.of(0.0) == 0.0);
+    let octaves = [1e4, 2e4, 4e4].map(|lux| brightness.of(lux));
+    let steps = [octaves[1] - octaves[0], octaves[2] - octaves[1]];
+    assert!(steps.iter().all(|step| (step / (25.0 * 2f32.ln()) - 1.0).abs() < 0.01), "{steps:?}");
 }
 
 #[test]
