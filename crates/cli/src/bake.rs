@@ -19,6 +19,7 @@ Examples:
   isolux bake room.isolux -o room.glb --carrier MOZ_lightmap      # three.js (with its loader's light map extension), Hubs
   isolux bake room.isolux -o room.glb --carrier sidecar           # and room.exr: three.js, Godot, Unity, Blender
   isolux bake room.isolux -o room.exr --texels-per-metre 50       # the map alone, a texel every 2 cm
+  isolux solve room.glb -o room-lightmap.glb                      # in one go: any name that ends with -lightmap.glb
 
 Texels hold irradiance E in lux, without the colour of the surface. three.js wants just that in material.lightMap, and
 divides by pi itself; shaders that multiply the map with the base colour want E / pi. The .json beside the files has the

@@ -73,6 +73,7 @@ fn formats() -> String {
     for format in export::FORMATS {
         text += &format!("  .{:<11} {}\n", format.extension, format.what);
     }
+    text += &format!("  {:<12} {}\n", export::OF_LIGHTMAPS, export::LIGHTMAP.what);
     text += "\nLightmaps are written to (isolux bake -o)\n";
     for format in export::lightmap::FORMATS {
         text += &format!("  .{:<11} {}\n", format.extension, format.what);

@@ -28,6 +28,17 @@ fn one_command_writes_the_model_the_map_and_what_to_know_about_them() {
 }
 
 #[test]
+fn a_solve_writes_a_lightmap_if_the_name_asks_for_one() {
+    let folder = solved("cubes");
+    folder.prints(&["bake", "a.isolux", "-o", "baked.glb"]);
+    folder.prints(&["render", "a.isolux", "-o", "room-lightmap.glb", "-o", "room.glb"]);
+    assert!(folder.read("room-lightmap.glb") == folder.read("baked.glb"));
+    assert!(folder.read("room.glb") != folder.read("baked.glb"));
+    folder.prints(&["solve", "cubes", "--elements", "500", "--rays", "50k", "-o", "again-lightmap.glb"]);
+    assert!(folder.read("again-lightmap.glb") == folder.read("baked.glb"));
+}
+
+#[test]
 fn coordinates_of_the_file_come_through_solving() {
     let folder = solved("cubes");
     folder.prints(&["bake", "a.isolux", "-o", "side.glb", "--carrier", "sidecar", "--size", "128"]);

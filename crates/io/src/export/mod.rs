@@ -131,6 +131,13 @@ pub const FORMATS: &[Exporter] = &[
     Exporter { extension: "json", what: "a summary: totals, balance, light on each object", write: json::write },
 ];
 
+/// Names that end with this are lightmaps, though their extension is `.glb`.
+pub const OF_LIGHTMAPS: &str = "-lightmap.glb";
+
+/// Chosen by the whole end of a name.
+pub const LIGHTMAP: Exporter =
+    Exporter { extension: "glb", what: "the lit scene with its light in a texture", write: lightmap::write_unlit };
+
 /// The formats that this program can write: all, but for pages if it was built without the viewer.
 pub fn writable() -> impl Iterator<Item = &'static Exporter> {
     FORMATS.iter().filter(|format| format.extension != "html" || html::template().is_ok())
@@ -162,11 +169,15 @@ impl Default for ExportOptions {
     }
 }
 
-/// The writer for `path`, by its extension in upper or lower case.
+/// The writer for `path`, by its extension in upper or lower case; what ends with `-lightmap.glb` becomes a lightmap.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], which lists the known ones; [`Error::NoViewer`] for a page that this program cannot make.
 pub fn for_path(path: &Path) -> Result<&'static Exporter, Error> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    if name.ends_with(OF_LIGHTMAPS) {
+        return Ok(&LIGHTMAP);
+    }
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     if extension == "html" {
         html::template()?;
@@ -193,6 +204,8 @@ mod tests {
     #[test]
     fn formats_are_found_by_extension() {
         assert_eq!(for_path(Path::new("a/b.x.VTU")).unwrap().extension, "vtu");
+        let what = |name: &str| for_path(Path::new(name)).unwrap().what;
+        assert!(what("a/Room-Lightmap.GLB").contains("texture") && !what("a/room.glb").contains("texture"));
         for path in ["a.doc", "csv", "", "a."] {
             let message = for_path(Path::new(path)).unwrap_err().to_string();
             assert!(message.contains(".npz") && message.contains("unknown file type"), "{message}");

@@ -4,9 +4,10 @@ mod glb;
 mod manifest;
 mod maps;
 
+use super::{ExportOptions, LitScene, picture};
 use crate::Error;
 use isolux_core::lightmap::{Layout, Lightmap, ObjectTexels, bake, per_object};
-use isolux_core::view::{Exposure, VertexField};
+use isolux_core::view::{self, Exposure, VertexField};
 use isolux_core::{Problem, Solution};
 use std::f32::consts::PI;
 use std::path::Path;
@@ -65,6 +66,17 @@ pub const FORMATS: &[LightmapFormat] = &[
         write: manifest::write,
     },
 ];
+
+/// A scene that every viewer shows as it is, with its light in a texture laid out by default.
+///
+/// # Errors
+/// [`Error::Core`] with those of [`bake`], and for a camera that is not there.
+pub fn write_unlit(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> {
+    let exposure = view::exposure(lit.problem, lit.field(), &picture::view_options(options))?;
+    let (layout, carrier) = (Layout::default(), Carrier::Unlit);
+    let baked = BakedScene::new(lit.problem, lit.computed, lit.field(), &layout, carrier, exposure, Vec::new())?;
+    glb::write(&baked)
+}
 
 /// The format for `path`, by its extension in upper or lower case.
 ///
