@@ -67,16 +67,16 @@ fn formats() -> String {
     let mut text = "Scenes are read from\n".to_owned();
     for format in import::FORMATS {
         let extensions: Vec<String> = format.extensions.iter().map(|extension| format!(".{extension}")).collect();
-        text += &format!("  {:<12} {}: {}\n", extensions.join(" "), format.name, format.what);
+        text += &format!("  {:<14} {}: {}\n", extensions.join(" "), format.name, format.what);
     }
     text += "\nSolutions are written to (-o)\n";
     for format in export::FORMATS {
-        text += &format!("  .{:<11} {}\n", format.extension, format.what);
+        text += &format!("  .{:<13} {}\n", format.extension, format.what);
     }
-    text += &format!("  {:<12} {}\n", export::OF_LIGHTMAPS, export::LIGHTMAP.what);
+    text += &format!("  {:<14} {}\n", export::OF_LIGHTMAPS, export::LIGHTMAP.what);
     text += "\nLightmaps are written to (isolux bake -o)\n";
     for format in export::lightmap::FORMATS {
-        text += &format!("  .{:<11} {}\n", format.extension, format.what);
+        text += &format!("  .{:<13} {}\n", format.extension, format.what);
     }
     text
 }
