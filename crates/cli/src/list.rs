@@ -71,9 +71,8 @@ fn formats() -> String {
     }
     text += "\nSolutions are written to (-o)\n";
     for format in export::FORMATS {
-        text += &format!("  .{:<13} {}\n", format.extension, format.what);
+        text += &format!("  {:<14} {}\n", format.ending, format.what);
     }
-    text += &format!("  {:<14} {}\n", export::OF_LIGHTMAPS, export::LIGHTMAP.what);
     text += "\nLightmaps are written to (isolux bake -o)\n";
     for format in export::lightmap::FORMATS {
         text += &format!("  .{:<13} {}\n", format.extension, format.what);

@@ -73,7 +73,7 @@ impl View {
         let Some(path) = &self.output else {
             return Ok(Path::new(self.solution.file_name().unwrap_or_default()).with_extension("html"));
         };
-        if export::for_path(path)?.extension != "html" {
+        if export::for_path(path)?.ending != export::PAGE {
             let what = format!("{}: what is looked at in the browser is a page, an .html file", path.display());
             return Err(Failure::usage(what).with_help("'isolux render' writes other formats"));
         }

@@ -111,7 +111,7 @@ fn prepare(folder: &Folder) {
 #[test]
 fn every_command_in_the_documentation_runs() {
     let mut count = 0;
-    let has_viewer = export::writable().any(|format| format.extension == "html");
+    let has_viewer = export::writable().any(|format| format.ending == export::PAGE);
     if !has_viewer {
         eprintln!("isolux was built without the viewer: commands that write pages are skipped");
     }

@@ -10,7 +10,7 @@ use isolux_io::export::writable;
 #[test]
 fn every_format_is_written_and_the_summary_says_so() {
     let folder = Folder::new();
-    let names: Vec<String> = writable().map(|format| format!("a.{}", format.extension)).collect();
+    let names: Vec<String> = writable().map(|format| format!("a{}", format.ending)).collect();
     let outputs: Vec<&str> = names.iter().flat_map(|name| ["-o", name.as_str()]).collect();
     let text = folder.prints(&with(&["solve"], &with(&SMALL, &outputs)));
     for name in &names {
@@ -45,7 +45,7 @@ fn json_is_one_object_with_everything_that_was_promised() {
 #[test]
 fn the_same_seed_gives_the_same_bytes_for_any_number_of_threads() {
     let folder = Folder::new();
-    let files: Vec<String> = writable().map(|format| format!("a.{}", format.extension)).collect();
+    let files: Vec<String> = writable().map(|format| format!("a{}", format.ending)).collect();
     let outputs: Vec<&str> = files.iter().flat_map(|name| ["-o", name.as_str()]).collect();
     let mut first = Vec::new();
     for threads in ["1", "2", "3", "7"] {
@@ -58,7 +58,7 @@ fn the_same_seed_gives_the_same_bytes_for_any_number_of_threads() {
         }
     }
     folder.prints(&with(&["solve", "--seed", "2"], &with(&SMALL, &outputs)));
-    assert!(folder.read("a.csv") != first[writable().position(|f| f.extension == "csv").unwrap()]);
+    assert!(folder.read("a.csv") != first[writable().position(|f| f.ending == ".csv").unwrap()]);
 }
 
 #[test]

@@ -26,7 +26,7 @@ pub fn names(table: &str) -> Result<Vec<&'static str>, Fail> {
         "ways" => WAYS.iter().map(|entry| entry.name).collect(),
         "studies" => STUDIES.iter().map(|study| study.name).collect(),
         "readers" => import::FORMATS.iter().flat_map(|format| format.extensions.iter().copied()).collect(),
-        "writers" => export::FORMATS.iter().map(|format| format.extension).collect(),
+        "writers" => export::FORMATS.iter().map(|format| format.ending.trim_start_matches('.')).collect(),
         _ => {
             let tables = ["scenes", "methods", "orders", "sequences", "ways", "studies", "readers", "writers"];
             return Err(Error::unknown_name("table", table, tables).into());

@@ -8,9 +8,9 @@
 //! error of a patch    ∫ (E - mean E)² dA
 //! ```
 //!
-//! where E is the brightness of light ([`light::Brightness`]), which is known before, well enough: direct light of every element of a uniform mesh, with the
-//! same random numbers in all, and indirect light of a *pilot*, a quick solution on large elements. Where triangles are smaller than elements should be they are put together ([`merge`]), up to the same
-//! error. [`grow`] says where to bisect, by [`samples`] of the light, [`forest`] keeps the patches, [`counts`] tells how large the error is with so many elements, [`balance`] keeps neighbours
+//! where E is the brightness of light ([`light::Brightness`]). It is known before, well enough ([`light`]): direct light of every element of a uniform
+//! mesh, with the same random numbers in all, and indirect light of a *pilot*, a quick solution on large elements. Where triangles are smaller than elements should be
+//! they are put together ([`merge`]), up to the same error. [`grow`] says where to bisect, by [`samples`] of the light, [`forest`] keeps the patches, [`counts`] tells how large the error is with so many elements, [`balance`] keeps neighbours
 //! within one level of each other. What a mesh becomes depends on the light alone, not on textures, and is always the same for the same effort.
 //! Cost: a quarter of the rays of a solve, and some 20 microseconds an element.
 

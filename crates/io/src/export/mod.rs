@@ -26,8 +26,8 @@ use std::path::Path;
 /// One format a solution can be written in.
 #[derive(Clone, Copy, Debug)]
 pub struct Exporter {
-    /// By which the format is chosen; lower case, without the dot.
-    pub extension: &'static str,
+    /// By which the format is chosen: how names of its files end, lower case. The first that fits counts.
+    pub ending: &'static str,
     /// What is in the file, in a few words.
     pub what: &'static str,
     pub write: fn(&LitScene, &ExportOptions) -> Result<Vec<u8>, Error>,
@@ -116,31 +116,32 @@ impl Smoothing {
 /// All formats. A new one is a file in this folder and a line here.
 pub const FORMATS: &[Exporter] = &[
     Exporter {
-        extension: "isolux",
+        ending: ".isolux",
         what: "the whole solution with its scene, to be read again",
         write: |lit, _| solution_file::write(lit.problem, lit.computed),
     },
-    Exporter { extension: "glb", what: "the lit scene, for any viewer of glTF", write: glb::write },
-    Exporter { extension: "html", what: "the lit scene, as a page for any browser", write: html::write },
-    Exporter { extension: "png", what: "a picture for a screen", write: picture::write_png },
-    Exporter { extension: "exr", what: "a picture in cd/m², linear, for further work", write: picture::write_exr },
-    Exporter { extension: "ply", what: "elements as coloured triangles with their light", write: ply::write },
-    Exporter { extension: "vtu", what: "elements as cells with their light, for ParaView", write: vtu::write },
-    Exporter { extension: "csv", what: "a table with a row for each element", write: csv::write },
-    Exporter { extension: "npz", what: "arrays with a row for each element, for NumPy", write: npz::write },
-    Exporter { extension: "json", what: "a summary: totals, balance, light on each object", write: json::write },
+    Exporter {
+        ending: "-lightmap.glb",
+        what: "the lit scene with its light in a texture",
+        write: lightmap::write_unlit,
+    },
+    Exporter { ending: ".glb", what: "the lit scene, for any viewer of glTF", write: glb::write },
+    Exporter { ending: PAGE, what: "the lit scene, as a page for any browser", write: html::write },
+    Exporter { ending: ".png", what: "a picture for a screen", write: picture::write_png },
+    Exporter { ending: ".exr", what: "a picture in cd/m², linear, for further work", write: picture::write_exr },
+    Exporter { ending: ".ply", what: "elements as coloured triangles with their light", write: ply::write },
+    Exporter { ending: ".vtu", what: "elements as cells with their light, for ParaView", write: vtu::write },
+    Exporter { ending: ".csv", what: "a table with a row for each element", write: csv::write },
+    Exporter { ending: ".npz", what: "arrays with a row for each element, for NumPy", write: npz::write },
+    Exporter { ending: ".json", what: "a summary: totals, balance, light on each object", write: json::write },
 ];
 
-/// Names that end with this are lightmaps, though their extension is `.glb`.
-pub const OF_LIGHTMAPS: &str = "-lightmap.glb";
-
-/// Chosen by the whole end of a name.
-pub const LIGHTMAP: Exporter =
-    Exporter { extension: "glb", what: "the lit scene with its light in a texture", write: lightmap::write_unlit };
+/// How names of pages end.
+pub const PAGE: &str = ".html";
 
 /// The formats that this program can write: all, but for pages if it was built without the viewer.
 pub fn writable() -> impl Iterator<Item = &'static Exporter> {
-    FORMATS.iter().filter(|format| format.extension != "html" || html::template().is_ok())
+    FORMATS.iter().filter(|format| format.ending != PAGE || html::template().is_ok())
 }
 
 /// What a writer may be told. Each uses what concerns it.
@@ -169,26 +170,24 @@ impl Default for ExportOptions {
     }
 }
 
-/// The writer for `path`, by its extension in upper or lower case; what ends with `-lightmap.glb` becomes a lightmap.
+/// The writer for `path`, by how its name ends, in upper or lower case.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], which lists the known ones; [`Error::NoViewer`] for a page that this program cannot make.
 pub fn for_path(path: &Path) -> Result<&'static Exporter, Error> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    if name.ends_with(OF_LIGHTMAPS) {
-        return Ok(&LIGHTMAP);
-    }
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    if extension == "html" {
-        html::template()?;
-    }
-    FORMATS.iter().find(|format| format.extension == extension).ok_or_else(|| {
-        let known: Vec<String> = writable().map(|format| format!(".{}", format.extension)).collect();
+    let fits = |format: &&Exporter| name.len() > format.ending.len() && name.ends_with(format.ending);
+    let found = FORMATS.iter().find(fits).ok_or_else(|| {
+        let known: Vec<&str> = writable().map(|format| format.ending).collect();
         Error::UnknownFormat {
             path: path.to_owned(),
             known: format!("a solution can be written as {}", known.join(", ")),
         }
-    })
+    })?;
+    if found.ending == PAGE {
+        html::template()?;
+    }
+    Ok(found)
 }
 
 /// The error of an encoder that could not write `format`.
@@ -202,11 +201,11 @@ mod tests {
     use crate::fixture;
 
     #[test]
-    fn formats_are_found_by_extension() {
-        assert_eq!(for_path(Path::new("a/b.x.VTU")).unwrap().extension, "vtu");
-        let what = |name: &str| for_path(Path::new(name)).unwrap().what;
-        assert!(what("a/Room-Lightmap.GLB").contains("texture") && !what("a/room.glb").contains("texture"));
-        for path in ["a.doc", "csv", "", "a."] {
+    fn formats_are_found_by_how_names_end() {
+        let ending = |name: &str| for_path(Path::new(name)).unwrap().ending;
+        assert_eq!(["a/b.x.VTU", "a/room.glb"].map(ending), [".vtu", ".glb"]);
+        assert_eq!(["a/Room-Lightmap.GLB", "lightmap.glb"].map(ending), ["-lightmap.glb", ".glb"]);
+        for path in ["a.doc", "csv", ".csv", "", "a."] {
             let message = for_path(Path::new(path)).unwrap_err().to_string();
             assert!(message.contains(".npz") && message.contains("unknown file type"), "{message}");
         }
@@ -218,7 +217,7 @@ mod tests {
         for format in writable() {
             let write = || (format.write)(&LitScene::new(&problem, &solution), &ExportOptions::default()).unwrap();
             let bytes = write();
-            assert!(!bytes.is_empty() && bytes == write(), "{}", format.extension);
+            assert!(!bytes.is_empty() && bytes == write(), "{}", format.ending);
         }
     }
 }

@@ -148,7 +148,7 @@ fn all_lookups_agree() {
         let [u, v]: [Vec<f32>; 2] = [all.iter().map(|p| p.x).collect(), all.iter().map(|p| p.y).collect()];
         let ([mut patch, mut front, mut further], [mut x, mut y]) = ([[0; 40]; 3], [[0.0; 40]; 2]);
         mesh.patches_at(triangle, [&u, &v], &mut patch, [&mut x, &mut y]);
-        mesh.fronts_at(&mut patch.clone(), [&mut x, &mut y], &mut front, &mut further);
+        mesh.fronts_at(&mut patch, [&mut x, &mut y], &mut front, &mut further);
         for (k, &uv) in all.iter().enumerate() {
             let (first, more) = lookup.front(uv);
             assert_eq!((front[k], further[k]), (first, more));
