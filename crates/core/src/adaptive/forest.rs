@@ -39,7 +39,8 @@ impl Forest {
     /// Grows all trees on as far as `rule` allows.
     pub fn grow(&mut self, problem: &Problem, light: &Light, rule: &Rule) {
         let scene = &problem.scene;
-        self.trees.par_iter_mut().enumerate().for_each(|(t, tree)| {
+        // The tree of a wall is as large as those of thousands of small triangles.
+        self.trees.par_iter_mut().enumerate().with_max_len(1).for_each(|(t, tree)| {
             let t = t as u32;
             grow::grow(tree, light, t, scene.corners(t), surface_area(scene, t), rule);
         });

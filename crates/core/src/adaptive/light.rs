@@ -20,7 +20,7 @@ use rayon::prelude::*;
 /// Elements that are computed in turn.
 const PIECE: usize = 256;
 /// Light below this share of the mean counts as it is, above by its logarithm.
-const DIM: f64 = 0.5;
+const DIM: f64 = 0.06;
 
 /// Light that changes slowly, of a pilot.
 pub struct Indirect {
@@ -123,13 +123,14 @@ impl Light<'_> {
             let (mean, variance) = Samples::for_moments(&light, t).mean_and_variance();
             OnTriangle { mean, error: surface_area(&problem.scene, t) as f32 * variance }
         };
-        light.triangles = (0..light.elements.len() as u32).into_par_iter().map(on).collect();
+        // A wall has as many samples as thousands of small triangles.
+        light.triangles = (0..light.elements.len() as u32).into_par_iter().with_max_len(1).map(on).collect();
         light
     }
 
     /// Irradiance [lux] on the front and on the back at barycentric coordinates `uv` of `triangle`.
     pub fn at(&self, triangle: u32, uv: Vec2) -> [f32; 2] {
-        [false, true].map(|back| self.field.irradiance_at(self.problem, triangle, uv, back).luminance())
+        self.field.irradiance_on_sides(self.problem, triangle, uv).map(Rgb::luminance)
     }
 
     /// The light on the whole of `triangle`.

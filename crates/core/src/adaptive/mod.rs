@@ -34,7 +34,7 @@ use self::light::{Brightness, Indirect, Light};
 use self::merge::Merges;
 use crate::math::Rgb;
 use crate::mesh::{Cut, MOST_ELEMENTS, Resolution};
-use crate::scene::Scene;
+use crate::scene::{Contacts, Scene};
 use crate::solvers::monte_carlo::{Budget, LightPart, METHODS, Settings};
 use crate::transport::direct_light::Rays;
 use crate::{Error, Problem, Solution};
@@ -44,7 +44,7 @@ use rayon::prelude::*;
 const PILOT: f64 = 0.25;
 /// Share of the whole work that the pilot may take.
 const SHARE: f64 = 0.08;
-/// Elements on which light is known, for each one of the mesh, more than triangles.
+/// Elements on which light is known, for each one of the mesh; there is one more than for each side of a triangle.
 const KNOWN: u64 = 2;
 /// Rays of one of them for its direct light, as a share of those of an element of the mesh.
 const DIRECT: f64 = 0.08;
@@ -58,6 +58,8 @@ const LARGEST: f64 = 4.0;
 const SMALLEST: f64 = 1.0 / 512.0;
 /// A mesh is close enough to the number of elements that was asked for from this share of it on.
 const CLOSE: f64 = 0.97;
+/// Share of the elements that stay for the light, however many contacts there are.
+const LEAST_BEFORE_CONTACTS: f64 = 0.5;
 /// Trials to meet the number of elements.
 const TRIALS: usize = 8;
 /// Trees grow to an error this share of the one that is expected at first, and to this share of the last one after that.
@@ -80,14 +82,15 @@ pub struct Followed {
     pub rays: u64,
 }
 
-/// Cuts `scene` into at most `elements` elements where the light asks for them, or as few as there can be if these are more. `solve` solves the pilot
-/// with the settings it is given; if it gives nothing, the mesh is uniform.
+/// Cuts `scene` into at most `elements` elements where the light asks for them and along `contacts`, or as few as there can be if these are more. `solve` solves the
+/// pilot with the settings it is given; if it gives nothing, elements are equal.
 ///
 /// # Errors
 /// Those of [`Problem::new`] and of `solve`.
 pub fn follow_light<E: From<Error>>(
     scene: Scene,
     elements: u64,
+    contacts: &Contacts,
     effort: Effort,
     solve: impl FnOnce(&Problem, Settings) -> Result<Option<Solution>, E>,
 ) -> Result<Followed, E> {
@@ -98,10 +101,11 @@ pub fn follow_light<E: From<Error>>(
     let pilot = Problem::new(scene.clone(), Resolution::Clustered(few))?;
     let solution = solve(&pilot, effort.of_pilot())?;
     let Some(solution) = solution.filter(|solution| solution.work.replicates >= LEAST_REPLICATES) else {
-        return Ok(Followed { problem: Problem::new(scene, Resolution::Clustered(elements))?, rays: 0 });
+        let cut = Resolution::Clustered(elements).cut_along(&scene, contacts)?;
+        return Ok(Followed { problem: pilot.cut_anew(&cut)?, rays: 0 });
     };
     let mut rays = solution.work.rays;
-    let many = (Resolution::least(&scene) + KNOWN * elements).min(MOST_ELEMENTS);
+    let many = (KNOWN * elements).max(Resolution::least(&scene) + elements).min(MOST_ELEMENTS);
     let known = pilot.clone().cut_anew(&Resolution::Elements(many).cut(&scene)?)?;
     let indirect = Indirect::new(pilot, &solution);
     let mut irradiance: Vec<Rgb> = known.mesh.elements().into_par_iter().map(|e| indirect.on(&known, e)).collect();
@@ -110,7 +114,7 @@ pub fn follow_light<E: From<Error>>(
         irradiance.iter_mut().zip(direct).for_each(|(light, direct)| *light += direct);
         rays += traced;
     }
-    let cut = adapt(&known, &irradiance, elements)?;
+    let cut = adapt(&known, &irradiance, elements, contacts)?;
     let problem = known.cut_anew(&cut)?;
     Ok(Followed { problem, rays })
 }
@@ -132,34 +136,36 @@ impl Effort {
 }
 
 /// How to cut the scene of `problem` into at most `elements` elements, or as few as there can be if these are more, for the
-/// `irradiance` [lux] of its elements.
+/// `irradiance` [lux] of its elements and along `contacts`, as far as half of the elements allow.
 ///
 /// # Errors
 /// [`Error::TooManyElements`].
-pub fn adapt(problem: &Problem, irradiance: &[Rgb], elements: u64) -> Result<Cut, Error> {
+pub fn adapt(problem: &Problem, irradiance: &[Rgb], elements: u64, contacts: &Contacts) -> Result<Cut, Error> {
     let brightness = Brightness::among(problem, irradiance);
     let bright: Vec<Rgb> = irradiance.iter().map(|light| Rgb::grey(brightness.of(light.luminance()))).collect();
     let light = Light::new(problem, &bright);
     let borders = Borders::of(&problem.scene, problem.geometry.as_ref());
     let mut largest = LARGEST;
     loop {
-        let (count, cut) = cut_for_target(problem, &light, &borders, elements, largest)?;
+        let cut = cut_for_target(problem, &light, &borders, elements, contacts, largest)?;
         largest *= 2.0;
         // Where many small things stand between large walls these have to do with fewer.
-        if count <= elements || largest > elements as f64 {
-            return Ok(cut);
+        if cut.element_count(&problem.scene)? as u64 <= elements || largest > elements as f64 {
+            return Ok(cut.along(&problem.scene, contacts, elements));
         }
     }
 }
 
-/// A cut with about `elements` elements, more of them only if there cannot be so few, none of them more than `largest` times as large as the mean.
+/// A cut that has about `elements` elements once it goes along `contacts` as well, more of them only if there cannot be so few, none of them more than `largest`
+/// times as large as the mean.
 fn cut_for_target(
     problem: &Problem,
     light: &Light,
     borders: &Borders,
     elements: u64,
+    contacts: &Contacts,
     largest: f64,
-) -> Result<(u64, Cut), Error> {
+) -> Result<Cut, Error> {
     let mean = problem.mesh.total_area() / elements as f64;
     let merges = Merges::of(&problem.scene, light, largest * mean);
     let mut forest = Forest::new(light);
@@ -174,7 +180,7 @@ fn cut_for_target(
         let (mut balanced, leaders) = (forest.pruned(error), merges.leaders(error));
         balance::balance(problem, borders, &mut balanced, &leaders);
         let cut = balanced.cut(leaders);
-        let count = cut.element_count(&problem.scene)? as u64;
+        let count = cut.along(&problem.scene, contacts, u64::MAX).element_count(&problem.scene)? as u64;
         let fits = count <= elements;
         if best.as_ref().is_none_or(|&(most, _)| if fits { most > elements || count > most } else { count < most }) {
             best = Some((count, cut));
@@ -183,8 +189,9 @@ fn cut_for_target(
             break;
         }
         aim = (aim as f64 * 0.5 * (1.0 + CLOSE) * elements as f64 / count as f64) as u64;
+        aim = aim.max((LEAST_BEFORE_CONTACTS * elements as f64) as u64);
     }
-    best.ok_or(Error::NoSurface)
+    best.map(|(_, cut)| cut).ok_or(Error::NoSurface)
 }
 
 /// The error [lux² m²] for which there are at most `aim` elements. Trees are grown no further than that takes.

@@ -23,15 +23,18 @@ impl Samples {
 
     /// On a whole triangle, so many that each element on which the light is known has some.
     pub fn of_triangle(light: &Light, triangle: u32) -> Samples {
-        let along = f64::from(ALONG_EDGE) * f64::from(light.elements_on(triangle)).sqrt();
-        Samples::along(light, triangle, WHOLE, (along.ceil() as u16).min(MOST_ALONG_EDGE))
+        Samples::along_elements(light, triangle, ALONG_EDGE)
     }
 
-    /// On a whole triangle, so few as mean and variance need.
+    /// On a whole triangle, so few as mean and variance need: where light is linear, on a single element, four samples have them exactly.
     pub fn for_moments(light: &Light, triangle: u32) -> Samples {
-        // On a single element light is linear, and four samples have its mean and its variance exactly.
-        let is_linear = light.elements_on(triangle) == 1;
-        if is_linear { Samples::along(light, triangle, WHOLE, 2) } else { Samples::of_triangle(light, triangle) }
+        Samples::along_elements(light, triangle, 2)
+    }
+
+    /// On a whole triangle, so many along the edge of each element on which the light is known.
+    fn along_elements(light: &Light, triangle: u32, divisions: u16) -> Samples {
+        let along = f64::from(divisions) * f64::from(light.elements_on(triangle)).sqrt();
+        Samples::along(light, triangle, WHOLE, (along.ceil() as u16).min(MOST_ALONG_EDGE))
     }
 
     /// In the middles of the cells of the patch with these corners on `triangle`, so many divisions along its edge.

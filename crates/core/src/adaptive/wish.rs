@@ -85,8 +85,7 @@ impl Wish {
         let enough = RAYS_PER_ELEMENT.saturating_mul(elements);
         let rays = budget.most_rays().filter(|&rays| rays < enough / 2).unwrap_or(enough);
         let effort = Effort { rays, seed: SEED, light: self.light };
-        let before_contacts = self.resolution.most_before(&scene, &contacts)?.unwrap_or(elements);
-        let Followed { problem, rays } = follow_light(scene, before_contacts, effort, |problem, settings| {
+        let Followed { problem, rays } = follow_light(scene, elements, &contacts, effort, |problem, settings| {
             check(problem)?;
             let mut goes_on = true;
             let solution = run(&mut MonteCarlo::new(problem, settings)?, problem, |progress| {
@@ -96,12 +95,7 @@ impl Wish {
             });
             Ok::<_, E>(Some(solution).filter(|_| goes_on))
         })?;
-        let budget = taken_off(budget, rays);
-        if contacts.triangles.is_empty() {
-            return Ok(Meshed { problem, budget });
-        }
-        let cut = problem.mesh.cut().along(&problem.scene, &contacts, elements);
-        Ok(Meshed { problem: problem.cut_anew(&cut)?, budget })
+        Ok(Meshed { problem, budget: taken_off(budget, rays) })
     }
 
     /// How many adaptive elements there shall be; `None` if they shall be equal.

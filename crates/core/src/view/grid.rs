@@ -34,7 +34,7 @@ impl Grid {
         for patch in mesh.patches() {
             // Those in between are split, and have no points.
             first.resize(patch as usize + 1, total);
-            total += per_side(mesh.divisions(patch)) * backs(mesh, patch).len();
+            total += points_on_side(mesh.divisions(patch)) * backs(mesh, patch).len();
         }
         first.push(total);
         Grid { first }
@@ -49,7 +49,7 @@ impl Grid {
     pub fn number(&self, mesh: &ElementMesh, side: Side, [i, j]: [u32; 2]) -> usize {
         let m = mesh.divisions(side.patch);
         let row = i as usize * (2 * usize::from(m) + 3 - i as usize) / 2;
-        let back = if side.back { per_side(m) } else { 0 };
+        let back = if side.back { points_on_side(m) } else { 0 };
         self.first[side.patch as usize] + back + row + j as usize
     }
 
@@ -71,7 +71,7 @@ fn backs(mesh: &ElementMesh, patch: u32) -> &'static [bool] {
 }
 
 /// Number of grid points of a side with `m` divisions.
-fn per_side(m: u16) -> usize {
+pub fn points_on_side(m: u16) -> usize {
     let m = usize::from(m);
     (m + 1) * (m + 2) / 2
 }

@@ -86,6 +86,13 @@ impl VertexField {
         self.interpolated(&self.irradiance, problem, triangle, uv, back)
     }
 
+    /// Irradiance [lux] there on the front and on the back.
+    pub fn irradiance_on_sides(&self, problem: &Problem, triangle: u32, uv: Vec2) -> [Rgb; 2] {
+        let spot = Spot::at(problem, triangle, uv);
+        let on = |back| self.between(&self.irradiance, problem, spot, back);
+        [on(false), if problem.mesh.is_two_sided(triangle) { on(true) } else { Rgb::BLACK }]
+    }
+
     /// Standard error [lux] there; NaN if it is not known.
     pub fn std_error_at(&self, problem: &Problem, triangle: u32, uv: Vec2, back: bool) -> Rgb {
         if !self.is_error_known() {
@@ -104,18 +111,18 @@ impl VertexField {
         if back && !problem.mesh.is_two_sided(triangle) {
             return Rgb::BLACK;
         }
-        let (patch, uv) = problem.mesh.patch_at(triangle, uv);
-        let m = problem.mesh.divisions(patch);
-        let (cell, within) = cells::locate(uv, m);
-        let side = Side { patch, back };
+        self.between(values, problem, Spot::at(problem, triangle, uv), back)
+    }
+
+    /// `values` of the vertices around `spot`, on the front or on the back.
+    fn between(&self, values: &[Rgb], problem: &Problem, spot: Spot, back: bool) -> Rgb {
+        let side = Side { patch: spot.patch, back };
         let value = |ij| {
             let number = self.vertices.grid.number(&problem.mesh, side, ij);
             values[self.vertices.of_grid_point(number) as usize]
         };
-        let [a, b, c] = cells::grid_corners(cell, m).map(value);
-        let s = within.x.clamp(0.0, 1.0);
-        let t = within.y.clamp(0.0, 1.0 - s);
-        a + (b - a) * s + (c - a) * t
+        let [a, b, c] = spot.corners.map(value);
+        a + (b - a) * spot.within.x + (c - a) * spot.within.y
     }
 
     /// Number of vertices.
@@ -160,6 +167,28 @@ impl VertexField {
     /// World position [m] of vertex `v`.
     pub fn position(&self, v: u32) -> Vec3 {
         self.vertices.position(v)
+    }
+}
+
+/// A cell of a patch, and where in it.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    patch: u32,
+    /// Grid points at its corners.
+    corners: [[u32; 2]; 3],
+    /// Barycentric coordinates.
+    within: Vec2,
+}
+
+impl Spot {
+    /// At barycentric coordinates `uv` of `triangle`.
+    fn at(problem: &Problem, triangle: u32, uv: Vec2) -> Spot {
+        let (patch, uv) = problem.mesh.patch_at(triangle, uv);
+        let m = problem.mesh.divisions(patch);
+        let (cell, within) = cells::locate(uv, m);
+        let s = within.x.clamp(0.0, 1.0);
+        let t = within.y.clamp(0.0, 1.0 - s);
+        Spot { patch, corners: cells::grid_corners(cell, m), within: Vec2::new(s, t) }
     }
 }
 

@@ -1,11 +1,12 @@
 //! The vertices of the lit surface: grid points that are the same place on the same smooth surface, made one.
 
-use super::grid::{self, Grid};
+use super::grid::{self, Grid, Side};
 use super::{contacts, crease};
 use crate::Problem;
 use crate::math::weld::{self, Weld};
 use crate::mesh::Place;
 use glam::Vec3;
+use rayon::prelude::*;
 
 /// Which grid points share a vertex, and which elements touch it. Edges between walls keep a vertex for each wall,
 /// smooth surfaces share theirs, whatever objects and materials they belong to.
@@ -32,7 +33,7 @@ impl Vertices {
         contacts::divide(problem, &grid, &place_of_grid_point, &mut of_grid_point, &mut places);
         let mut vertices = Vertices { grid, of_grid_point, positions, places, first: Vec::new(), touching: Vec::new() };
         let touched = |e: u32| vertices.of_element(problem, e).into_iter().map(move |v| (v, e));
-        let pairs: Vec<(u32, u32)> = mesh.elements().flat_map(touched).collect();
+        let pairs: Vec<(u32, u32)> = mesh.elements().into_par_iter().flat_map_iter(touched).collect();
         let (first, sorted) = group_by(vertices.len(), pairs.len(), |k| pairs[k].0);
         vertices.first = first;
         vertices.touching = sorted.into_iter().map(|k| pairs[k].1).collect();
@@ -86,16 +87,27 @@ impl Vertices {
 
 /// Place (welded position) and normal of every grid point, and the positions [m] of the places.
 fn places(problem: &Problem, grid: &Grid) -> (Vec<u32>, Vec<Vec3>, Vec<Vec3>) {
+    let mesh = &problem.mesh;
+    let fronts: Vec<Side> = grid.sides(mesh).filter(|side| !side.back).collect();
+    let points = |side: &Side| {
+        let (patch, triangle) = (side.patch, side.triangle(mesh));
+        let at = move |point| problem.geometry.surface(triangle, grid::on_triangle(mesh, patch, point));
+        grid::points(mesh.divisions(patch)).map(at)
+    };
+    let surface: Vec<(Vec3, Vec3)> = fronts.par_iter().flat_map_iter(points).collect();
     let radius = problem.geometry.bounding_sphere().1;
     let mut weld = Weld::new((weld::TOLERANCE * radius).max(f32::MIN_POSITIVE));
     let mut places = Vec::with_capacity(grid.len());
     let mut normals = Vec::with_capacity(grid.len());
-    for side in grid.sides(&problem.mesh) {
-        for point in grid::points(problem.mesh.divisions(side.patch)) {
-            let uv = grid::on_triangle(&problem.mesh, side.patch, point);
-            let (position, normal) = problem.geometry.surface(side.triangle(&problem.mesh), uv);
-            places.push(weld.number(position));
-            normals.push(if side.back { -normal } else { normal });
+    let mut left = &surface[..];
+    for side in fronts {
+        let (front, others) = left.split_at(grid::points_on_side(mesh.divisions(side.patch)));
+        left = others;
+        places.extend(front.iter().map(|&(position, _)| weld.number(position)));
+        normals.extend(front.iter().map(|&(_, normal)| normal));
+        if mesh.is_two_sided(side.triangle(mesh)) {
+            places.extend_from_within(places.len() - front.len()..);
+            normals.extend(front.iter().map(|&(_, normal)| -normal));
         }
     }
     (places, normals, weld.into_positions())

@@ -15,8 +15,8 @@ use isolux_core::adaptive::{Effort, Followed, follow_light};
 use isolux_core::math::Rgb;
 use isolux_core::mesh::{ElementMesh, Resolution};
 use isolux_core::run::run;
-use isolux_core::scene::Scene;
 use isolux_core::scene::builtin::builtin;
+use isolux_core::scene::{Contacts, Scene};
 use isolux_core::solvers::MonteCarlo;
 use isolux_core::solvers::budget::RAYS_PER_ELEMENT;
 use isolux_core::solvers::monte_carlo::{Budget, LightPart, Settings};
@@ -68,7 +68,8 @@ fn measure(name: &str, scene: &Scene, elements: &[u64]) -> Result<()> {
             let start = Instant::now();
             let effort = Effort { rays: RAYS_PER_ELEMENT * count, seed, light: LightPart::All };
             let pilot = |problem: &Problem, settings: Settings| solve(problem, settings).map(Some);
-            let Followed { problem: adaptive, rays } = follow_light(scene.clone(), count, effort, pilot)?;
+            let Followed { problem: adaptive, rays } =
+                follow_light(scene.clone(), count, &Contacts::NONE, effort, pilot)?;
             seconds += start.elapsed().as_secs_f64() / SEEDS.len() as f64;
             (taken, used) = (taken + rays, adaptive.mesh.len());
             let errors = reference.errors(&adaptive);

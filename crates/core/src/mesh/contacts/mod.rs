@@ -52,20 +52,6 @@ impl Resolution {
         }
         Ok(best)
     }
-
-    /// How many elements there may be before they are cut along `contacts`, for as many after as are asked for.
-    ///
-    /// # Errors
-    /// Those of [`Resolution::cut`].
-    pub fn most_before(self, scene: &Scene, contacts: &Contacts) -> Result<Option<u64>, Error> {
-        if contacts.triangles.is_empty() {
-            return Ok(self.most(scene));
-        }
-        let whole = self.cut(scene)?;
-        let (before, after) =
-            (whole.element_count(scene)?, whole.along(scene, contacts, u64::MAX).element_count(scene)?);
-        Ok(self.most(scene).map(|most| (most as f64 * before as f64 / after as f64) as u64))
-    }
 }
 
 /// A triangle cut anew.
