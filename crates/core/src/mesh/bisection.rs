@@ -117,15 +117,6 @@ impl Patch {
 }
 
 impl ElementMesh {
-    /// The patch with elements at the point `uv` of `patch`, and the barycentric coordinates on it.
-    #[inline(always)]
-    pub(super) fn leaf_at(&self, mut patch: u32, mut uv: Vec2) -> (u32, Vec2) {
-        while let Some(divided) = self.patches.get(patch as usize).filter(|patch| patch.is_divided()) {
-            (patch, uv) = divided.part_at(uv);
-        }
-        (patch, uv)
-    }
-
     /// The first corner of `patch` in barycentric coordinates on its triangle, and the edges that leave it.
     pub(super) fn frame(&self, patch: u32) -> [Vec2; 3] {
         let part = self.part(patch);

@@ -4,6 +4,7 @@ use super::average::Averages;
 use super::bisection::Division;
 use super::clusters::{Cluster, Clusters};
 use super::cut::Cut;
+use super::descent::Step;
 use super::slices::Slices;
 use super::sparse::SparseColors;
 use super::{ElementMesh, Patch, Resolution, Surface, cells, morton, triangle};
@@ -37,6 +38,7 @@ impl ElementMesh {
             surfaces: Vec::with_capacity(cut.slices.len()),
             patches: Vec::with_capacity(cut.divisions.len()),
             parts: Vec::new(),
+            steps: Vec::new(),
             clusters: Clusters::default(),
             patch: Vec::with_capacity(total),
             reflectivity: Vec::with_capacity(total),
@@ -55,6 +57,7 @@ impl ElementMesh {
                 Some(_) => {}
             }
         }
+        mesh.steps = Step::from_all(&mesh.patches);
         mesh.clusters = clusters;
         mesh.check_finite()?;
         Ok(mesh)

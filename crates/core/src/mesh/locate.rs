@@ -30,28 +30,22 @@ impl ElementMesh {
         mut each: impl FnMut(usize, Option<(u32, Vec2)>),
     ) {
         let mut surfaces = [Surface::NONE; TOGETHER];
-        let mut on_patch = [(0, Vec2::ZERO); TOGETHER];
+        let ([mut numbers, mut waiting], [mut x, mut y]) = ([[0; TOGETHER]; 2], [[0.0; TOGETHER]; 2]);
         let mut patches = [Patch::NONE; TOGETHER];
         let last = self.surfaces.len() - 1;
         for (k, surface) in surfaces[..count].iter_mut().enumerate() {
             *surface = self.surfaces[(point(k).triangle as usize).min(last)];
         }
-        for (k, (surface, on_patch)) in surfaces[..count].iter().zip(&mut on_patch).enumerate() {
+        for (k, surface) in surfaces[..count].iter().enumerate() {
             let (number, uv) = surface.slices.locate(point(k).uv);
-            *on_patch = (surface.first_patch + number, uv);
+            (numbers[k], x[k], y[k]) = (surface.first_patch + number, uv.x, uv.y);
         }
-        for (patch, &(number, _)) in patches.iter_mut().zip(&on_patch[..count]) {
+        self.leaves_at(&mut numbers[..count], [&mut x[..count], &mut y[..count]], &mut waiting);
+        for (patch, &number) in patches.iter_mut().zip(&numbers[..count]) {
             *patch = self.patches[number as usize];
         }
-        while patches[..count].iter().any(Patch::is_divided) {
-            let divided = patches[..count].iter_mut().zip(&mut on_patch).filter(|(patch, _)| patch.is_divided());
-            for (patch, on_patch) in divided {
-                *on_patch = patch.part_at(on_patch.1);
-                *patch = self.patches[on_patch.0 as usize];
-            }
-        }
         for (k, (surface, patch)) in surfaces[..count].iter().zip(&patches).enumerate() {
-            let (uv, back) = (on_patch[k].1, point(k).back);
+            let (uv, back) = (Vec2::new(x[k], y[k]), point(k).back);
             let (cell, within) = cells::locate(uv, patch.divisions);
             let within = self.clusters.piece(point(k).triangle).map_or(within, |piece| piece.within(within));
             let offset = if back { cells::count(patch.divisions) } else { 0 };

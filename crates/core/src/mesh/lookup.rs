@@ -4,7 +4,7 @@
 //! memory for its patch. In stages eight points are located at once, without a branch.
 
 use super::slices::Slices;
-use super::{ElementMesh, Patch, Surface, cells};
+use super::{ElementMesh, Surface, cells};
 use glam::Vec2;
 use std::array::from_fn;
 
@@ -16,7 +16,7 @@ pub const LANES: usize = 8;
 pub struct Lookup<'a> {
     mesh: &'a ElementMesh,
     slices: Slices,
-    patches: &'a [Patch],
+    first_patch: u32,
     two_sided: bool,
 }
 
@@ -24,10 +24,8 @@ impl ElementMesh {
     /// The elements of `triangle`.
     #[inline(always)]
     pub fn lookup(&self, triangle: u32) -> Lookup<'_> {
-        let surface = &self.surfaces[triangle as usize];
-        let first = surface.first_patch as usize;
-        let patches = &self.patches[first..first + surface.slices.patch_count() as usize];
-        Lookup { mesh: self, slices: surface.slices, patches, two_sided: surface.two_sided }
+        let Surface { first_patch, slices, two_sided, .. } = self.surfaces[triangle as usize];
+        Lookup { mesh: self, slices, first_patch, two_sided }
     }
 }
 
@@ -41,17 +39,9 @@ impl Lookup<'_> {
     /// is any, has a number that is greater by the second result.
     #[inline]
     pub fn front(&self, uv: Vec2) -> (u32, u32) {
-        let (mut patch, mut uv) = if let [patch] = self.patches {
-            (patch, uv)
-        } else {
-            let (patch, uv) = self.slices.locate(uv);
-            (&self.patches[patch as usize], uv)
-        };
-        while patch.is_divided() {
-            let part;
-            (part, uv) = patch.part_at(uv);
-            patch = &self.mesh.patches[part as usize];
-        }
+        let (number, uv) = if self.slices == Slices::WHOLE { (0, uv) } else { self.slices.locate(uv) };
+        let (patch, uv) = self.mesh.leaf_at(self.first_patch + number, uv);
+        let patch = &self.mesh.patches[patch as usize];
         (patch.first + cells::at(uv, patch.divisions), cells::count(patch.divisions))
     }
 }
@@ -84,51 +74,16 @@ impl ElementMesh {
     /// Patches without a meaning have some elements.
     #[inline(always)]
     pub fn fronts_at(&self, patch: &mut [u32], [x, y]: [&mut [f32]; 2], front: &mut [u32], further: &mut [u32]) {
-        if self.firsts(patch, front, further) {
-            self.go_down(patch, [&mut *x, &mut *y], further);
-            self.firsts(patch, front, further);
+        self.leaves_at(patch, [&mut *x, &mut *y], further);
+        for ((front, further), &patch) in front.iter_mut().zip(&mut *further).zip(&*patch) {
+            let found = self.patches.get(patch as usize);
+            (*front, *further) = found.map_or((0, 1), |patch| (patch.first, u32::from(patch.divisions)));
         }
         let out = front.as_chunks_mut::<LANES>().0.iter_mut().zip(further.as_chunks_mut::<LANES>().0);
         for ((x, y), (front, further)) in x.as_chunks::<LANES>().0.iter().zip(y.as_chunks::<LANES>().0).zip(out) {
             let m: [u16; LANES] = further.map(|divisions| divisions as u16);
             let cell: [u32; LANES] = from_fn(|k| cells::at(Vec2::new(x[k], y[k]), m[k]));
             (*front, *further) = (from_fn(|k| front[k] + cell[k]), m.map(cells::count));
-        }
-    }
-
-    /// The first element of each patch, or its first part, and its divisions; whether any patch is divided.
-    #[inline(always)]
-    fn firsts(&self, patch: &[u32], front: &mut [u32], further: &mut [u32]) -> bool {
-        let mut any_is_divided = false;
-        for ((front, further), &patch) in front.iter_mut().zip(further).zip(patch) {
-            let found = self.patches.get(patch as usize);
-            (*front, *further) = found.map_or((0, 1), |patch| (patch.first, u32::from(patch.divisions)));
-            any_is_divided |= found.is_some_and(Patch::is_divided);
-        }
-        any_is_divided
-    }
-
-    /// From the patches of points to those parts of them that are not divided, all of them one level at a time: then the processor waits
-    /// for many parts at once. `waiting` is room for the numbers of those points that are not there yet.
-    #[inline(always)]
-    fn go_down(&self, patch: &mut [u32], [x, y]: [&mut [f32]; 2], waiting: &mut [u32]) {
-        let is_divided = |patch: u32| self.patches.get(patch as usize).is_some_and(Patch::is_divided);
-        let mut count = 0;
-        // All are written down, and those that are there written over: no branch, for it would be guessed wrong.
-        for (k, &patch) in (0..).zip(&*patch) {
-            waiting[count] = k;
-            count += usize::from(is_divided(patch));
-        }
-        while count > 0 {
-            let mut left = 0;
-            for i in 0..count {
-                let k = waiting[i] as usize;
-                let (part, uv) = self.patches[patch[k] as usize].part_at(Vec2::new(x[k], y[k]));
-                (patch[k], x[k], y[k]) = (part, uv.x, uv.y);
-                waiting[left] = k as u32;
-                left += usize::from(is_divided(part));
-            }
-            count = left;
         }
     }
 }
@@ -150,7 +105,7 @@ mod tests {
         let (mut needles, mut backs) = (0, 0);
         for triangle in 0..scene.triangles.len() as u32 {
             let lookup = mesh.lookup(triangle);
-            needles += usize::from(lookup.patches.len() > 1);
+            needles += usize::from(lookup.slices.patch_count() > 1);
             for k in 0..20u32 {
                 let u = ((triangle + k) as f32 * 0.618_034).fract();
                 let uv = Vec2::new(u, (k as f32 * 0.414_214).fract() * (1.0 - u));

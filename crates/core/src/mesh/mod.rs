@@ -16,6 +16,7 @@ mod clip;
 mod clusters;
 mod contacts;
 mod cut;
+mod descent;
 mod grow;
 mod locate;
 mod lookup;
@@ -41,6 +42,7 @@ use crate::math::Rgb;
 use crate::math::warp::square_to_triangle;
 use bisection::{Content, Part};
 use clusters::Clusters;
+use descent::Step;
 use glam::{Vec2, Vec3};
 use sparse::SparseColors;
 
@@ -52,6 +54,8 @@ pub struct ElementMesh {
     patches: Vec<Patch>,
     /// Where the patches lie that are parts of others, the last ones.
     parts: Vec<Part>,
+    /// Where it goes on from each patch, if any is divided.
+    steps: Vec<Step>,
     clusters: Clusters,
     /// Patch of every element; of a cluster that of its largest triangle.
     patch: Vec<u32>,
