@@ -34,8 +34,8 @@ pub struct MeshArguments {
     contacts: AtContacts,
 
     /// Where elements are small: uniform, the same everywhere, or adaptive, where the light changes (at the edges of shadows, beside lamps). The elements of
-    /// an adaptive mesh hide half as much of the light on them, but have more noise: to the same error bar it takes two to three times as long. A quick solution
-    /// finds it, for some 25 rays an element; the same scene, --elements and --light make the same mesh, whatever the seed and the method (but for
+    /// an adaptive mesh hide half as much of the light on them, but have more noise: to the same error bar it takes about twice as long. A quick solution
+    /// finds it, for some 20 rays an element; the same scene, --elements and --light make the same mesh, whatever the seed and the method (but for
     /// few --rays or little --time)
     #[arg(long, value_enum, default_value = "uniform", hide_possible_values = true)]
     mesh: Mesh,

@@ -1,7 +1,7 @@
 //! The mesh that a solve gets: elements that follow the light, or equal ones, and what is left of its budget.
 //!
 //! The same scene, elements and part of the light make the same mesh, whatever else is asked for, so that solutions can be merged and compared; but
-//! for few rays, of which finding it takes a quarter, and where whoever watches has no time for it: then elements are equal.
+//! for few rays, of which finding it takes a fifth, and where whoever watches has no time for it: then elements are equal.
 
 use super::{Effort, Followed, follow_light};
 use crate::mesh::{ElementMesh, Resolution};
