@@ -29,12 +29,12 @@ enum AtContacts {
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct MeshArguments {
     /// Where something stands on a surface, or passes through it: cut elements along its foot, or ignore it. Cut, no light passes below, exactly;
-    /// ignored, up to some hundredths of it do, and elements are equal
+    /// ignored, up to some hundredths of it do
     #[arg(long, value_name = "WHAT", default_value = "cut")]
     contacts: AtContacts,
 
     /// Where elements are small: uniform, the same everywhere, or adaptive, where the light changes (at the edges of shadows, beside lamps). The elements of
-    /// an adaptive mesh hide half as much of the light on them, but have more noise: to the same error bar it takes about twice as long. A quick solution
+    /// an adaptive mesh hide half as much of the light on them, but have more noise: to the same error bar it takes half as long again or more. A quick solution
     /// finds it, for some 20 rays an element; the same scene, --elements and --light make the same mesh, whatever the seed and the method (but for
     /// few --rays or little --time)
     #[arg(long, value_enum, default_value = "uniform", hide_possible_values = true)]

@@ -44,7 +44,7 @@ use rayon::prelude::*;
 const PILOT: f64 = 0.25;
 /// Share of the whole work that the pilot may take.
 const SHARE: f64 = 0.08;
-/// Elements on which light is known, for each one of the mesh; there is one more than for each side of a triangle.
+/// Elements on which light is known, for each one of the mesh; at least as many as the mesh has, beside one for each side of a triangle.
 const KNOWN: u64 = 2;
 /// Rays of one of them for its direct light, as a share of those of an element of the mesh.
 const DIRECT: f64 = 0.08;
@@ -188,8 +188,12 @@ fn cut_for_target(
         if fits && count as f64 >= CLOSE * elements as f64 {
             break;
         }
-        aim = (aim as f64 * 0.5 * (1.0 + CLOSE) * elements as f64 / count as f64) as u64;
-        aim = aim.max((LEAST_BEFORE_CONTACTS * elements as f64) as u64);
+        let fewer = aim as f64 * 0.5 * (1.0 + CLOSE) * elements as f64 / count as f64;
+        let next = fewer.max(LEAST_BEFORE_CONTACTS * elements as f64) as u64;
+        if next == aim {
+            break;
+        }
+        aim = next;
     }
     best.map(|(_, cut)| cut).ok_or(Error::NoSurface)
 }

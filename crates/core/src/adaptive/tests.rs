@@ -3,7 +3,9 @@ use super::forest::Leaf;
 use super::*;
 use crate::mesh::{cells, surface_area};
 use crate::sampling::SequenceName;
+use crate::scene::Material;
 use crate::scene::builtin::builtin;
+use crate::scene::builtin::shapes::Builder;
 use crate::solution::Work;
 use crate::transport::{DirectEstimator, LightSampler};
 use crate::view::tests::solution;
@@ -14,7 +16,11 @@ const EFFORT: Effort = Effort { rays: 2_000_000, seed: 1, light: LightPart::All 
 
 /// A built-in scene under made-up light [lux] at every place [m].
 fn lit(name: &str, elements: u64, light: impl Fn(Vec3) -> f32) -> (Problem, Vec<Rgb>) {
-    let problem = Problem::new(builtin(name).unwrap(), Resolution::Elements(elements)).unwrap();
+    lit_scene(builtin(name).unwrap(), elements, light)
+}
+
+fn lit_scene(scene: Scene, elements: u64, light: impl Fn(Vec3) -> f32) -> (Problem, Vec<Rgb>) {
+    let problem = Problem::new(scene, Resolution::Elements(elements)).unwrap();
     let irradiance = problem.mesh.elements().map(|e| Rgb::grey(light(middle(&problem, e)))).collect();
     (problem, irradiance)
 }
@@ -56,12 +62,33 @@ fn the_budget_is_used_and_never_exceeded() {
     for name in ["cornell-box", "cubes"] {
         let (problem, light) = lit(name, 5000, pool);
         for elements in [6000, 20_000] {
-            let count =
-                adapt(&problem, &light, elements, &Contacts::NONE).unwrap().element_count(&problem.scene).unwrap()
-                    as u64;
+            let count = adapted(&problem, &light, elements).mesh.len() as u64;
             assert!(count <= elements && count as f64 > 0.9 * elements as f64, "{name}: {count} of {elements}");
         }
     }
+}
+
+#[test]
+fn elements_are_cut_along_all_contacts_and_are_not_more_for_that() {
+    let mut builder = Builder::new("a wall that crosses a floor");
+    let material = builder.material(Material::diffuse("", Rgb::grey(0.5)));
+    builder.object("all", material);
+    for corners in [
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.0, -1.0]],
+        [[0.1, -0.1, -0.2], [0.9, -0.1, -0.7], [0.9, 0.4, -0.7], [0.1, 0.4, -0.2]],
+    ] {
+        builder.polygon(&corners.map(Vec3::from));
+    }
+    let (problem, light) = lit_scene(builder.finish(), 2000, pool);
+    let elements = 1000;
+    let contacts = Contacts::of(&problem.scene, Resolution::Elements(elements).typical_edge(&problem.scene));
+    let count = |cut: &Cut| cut.element_count(&problem.scene).unwrap() as u64;
+    let cut = adapt(&problem, &light, elements, &contacts).unwrap();
+    let whole = adapt(&problem, &light, elements, &Contacts::NONE).unwrap();
+    let [before, after] = [&whole, &whole.along(&problem.scene, &contacts, u64::MAX)].map(count);
+    assert!(after as f64 > 1.05 * before as f64, "there are too few contacts to tell: {before} elements, {after} cut");
+    assert!(count(&cut) <= elements && count(&cut) as f64 > 0.9 * elements as f64, "{}", count(&cut));
+    assert_eq!(count(&cut.along(&problem.scene, &contacts, u64::MAX)), count(&cut));
 }
 
 #[test]
