@@ -4,7 +4,7 @@
 //! Solution --vertex_field--> VertexField --picture--> Picture (cd/m², and tone-mapped for a screen)
 //!    crease, contacts: which element corners are one vertex    camera_rays, default_view: where from
 //!    neighbours, smooth: noise taken out (of tables, too)      surface_light, tone: what is seen there
-//!    cover, pycnophylactic, seams: what the value of a vertex is
+//!    cover, vertex_weights, pycnophylactic, seams: what the value of a vertex is
 //! ```
 
 pub mod camera_rays;
@@ -22,6 +22,7 @@ pub mod smooth;
 pub mod surface_light;
 pub mod tone;
 pub mod vertex_field;
+mod vertex_weights;
 pub(crate) mod vertices;
 
 pub use default_view::camera as default_camera;

@@ -1,22 +1,22 @@
 //! Irradiance as people look at it: one value for every vertex, linear between them.
 //!
 //! A solution has one value for every element and noise in it. The field's value at a vertex is the mean of the elements
-//! that touch it, weighted with their open areas ([`super::cover`]), after differences that the error bars cannot tell from
+//! that touch it, weighted with their open areas ([`super::cover`]) and nearness ([`super::vertex_weights`]), after differences that the error bars cannot tell from
 //! noise were taken out ([`super::smooth`]). Vertices are shared where surfaces meet smoothly ([`super::crease`]), so
 //! furniture looks round and edges between walls stay sharp, light runs on inside elements of many triangles
 //! ([`super::pycnophylactic`]), and T-vertices follow the edge they lie on
-//! ([`super::seams`]). Area weights, not the inverse variances of the elements: a value that is low by chance has a small
+//! ([`super::seams`]). Not the inverse variances of the elements: a value that is low by chance has a small
 //! error bar as well, and would be believed too much.
 
 use super::grid::Side;
 use super::seams::EdgePoints;
+use super::vertex_weights::VertexWeights;
 use super::vertices::Vertices;
 use super::{cover, pycnophylactic, seams, smooth};
 use crate::math::Rgb;
 use crate::mesh::{Place, cells};
 use crate::{Problem, Solution};
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 
 /// Irradiance [lux] interpolated over the surface, and how sure it is. Memory grows with the number of element corners, 50 to 70 bytes
 /// each.
@@ -55,9 +55,10 @@ impl VertexField {
         values: &[Rgb],
         open: &[f32],
     ) -> VertexField {
-        let mut field = VertexField::of_values(problem, vertices, values, open);
+        let weights = VertexWeights::new(problem, &vertices, open);
+        let mut field = VertexField::of_values(problem, vertices, &weights, values);
         if let Some(errors) = smooth::errors_of_open_parts(solution, open) {
-            field.std_error = means(problem, &field.vertices, &errors, open);
+            field.std_error = weights.means(&field.vertices, &errors);
         }
         for seam in seams::t_vertices(problem, &field.vertices) {
             let (from, to) = (field.irradiance(seam.from), field.irradiance(seam.to));
@@ -70,12 +71,13 @@ impl VertexField {
     /// closed. On the vertices of `earlier`, a field of the same problem, if there is one.
     pub fn draft(problem: &Problem, irradiance: &[Rgb], earlier: Option<VertexField>) -> VertexField {
         let vertices = earlier.map_or_else(|| Vertices::new(problem), |field| field.vertices);
-        VertexField::of_values(problem, vertices, irradiance, &vec![1.0; problem.mesh.len()])
+        let weights = VertexWeights::new(problem, &vertices, &vec![1.0; problem.mesh.len()]);
+        VertexField::of_values(problem, vertices, &weights, irradiance)
     }
 
-    /// Means at the vertices of `values` [lux] of the elements, of whose areas the shares `open` count.
-    fn of_values(problem: &Problem, vertices: Vertices, values: &[Rgb], open: &[f32]) -> VertexField {
-        let mut irradiance = means(problem, &vertices, values, open);
+    /// Means at the vertices of `values` [lux] of the elements.
+    fn of_values(problem: &Problem, vertices: Vertices, weights: &VertexWeights, values: &[Rgb]) -> VertexField {
+        let mut irradiance = weights.means(&vertices, values);
         pycnophylactic::interpolate(problem, &vertices, values, &mut irradiance);
         VertexField { vertices, irradiance, std_error: Vec::new() }
     }
@@ -190,27 +192,6 @@ impl Spot {
         let t = within.y.clamp(0.0, 1.0 - s);
         Spot { patch, corners: cells::grid_corners(cell, m), within: Vec2::new(s, t) }
     }
-}
-
-/// Means at `vertices` of `values` of the elements, of whose areas the shares `open` count.
-fn means(problem: &Problem, vertices: &Vertices, values: &[Rgb], open: &[f32]) -> Vec<Rgb> {
-    let weight = |e: u32| problem.mesh.area(e) * open[e as usize];
-    (0..vertices.len() as u32).into_par_iter().map(|v| vertex_mean(vertices.touching(v), values, weight)).collect()
-}
-
-/// Weighted mean of the values of `elements`; the plain mean if none has a weight. Summed as deviations from the first, so
-/// that equal values have exactly that value as their mean.
-fn vertex_mean(elements: &[u32], values: &[Rgb], weight: impl Fn(u32) -> f32) -> Rgb {
-    let Some(&first) = elements.first() else { return Rgb::BLACK };
-    let base = values[first as usize];
-    let (mut deviation, mut total) = (Rgb::BLACK, 0.0);
-    let covered = elements.iter().all(|&e| weight(e) <= 0.0);
-    for &e in elements {
-        let w = if covered { 1.0 } else { weight(e) };
-        deviation += (values[e as usize] - base) * w;
-        total += w;
-    }
-    base + deviation / total
 }
 
 #[cfg(test)]

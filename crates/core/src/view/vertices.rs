@@ -7,6 +7,7 @@ use crate::math::weld::{self, Weld};
 use crate::mesh::Place;
 use glam::Vec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Which grid points share a vertex, and which elements touch it. Edges between walls keep a vertex for each wall,
 /// smooth surfaces share theirs, whatever objects and materials they belong to.
@@ -81,7 +82,12 @@ impl Vertices {
 
     /// Elements that touch vertex `v`.
     pub fn touching(&self, v: u32) -> &[u32] {
-        &self.touching[self.first[v as usize]..self.first[v as usize + 1]]
+        &self.touching[self.range(v)]
+    }
+
+    /// Where the elements that touch vertex `v` are in a list of those of all vertices.
+    pub fn range(&self, v: u32) -> Range<usize> {
+        self.first[v as usize]..self.first[v as usize + 1]
     }
 }
 
