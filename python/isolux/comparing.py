@@ -24,7 +24,7 @@ def merge(solutions: Sequence[Solution]) -> Solution:
 
 @dataclass(frozen=True)
 class Comparison:
-    """How two solutions of the same problem differ, and whether their error bars explain it."""
+    """How two solutions of the same scene differ, and whether their error bars explain it."""
 
     rms: float
     """RMS difference of the irradiance by area, relative to the mean of both."""
@@ -44,10 +44,10 @@ class Comparison:
 
 
 def compare(a: Solution, b: Solution) -> Comparison:
-    """How two solutions of the same problem differ.
+    """How two solutions of the same scene differ. If it is cut into other elements, `b` is averaged on those of `a`: only means have scores then.
 
     Raises:
-        NotComparable: they are of different scenes, or cut into different elements.
+        NotComparable: they are of different scenes.
     """
     known = json.loads(a._native.compare(b._native))
     means = {name: one["z"] for name, one in by_name(known["objects"]).items()}

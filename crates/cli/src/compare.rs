@@ -21,10 +21,10 @@ z is the difference of an element divided by its standard deviation. Of two inde
 honest error bars z has mean 0 and standard deviation 1, and 0.3 % of the elements are beyond 3. Behind ± are \
 standard errors.";
 
-/// Compare two solutions of the same scene and elements
+/// Compare two solutions of the same scene
 ///
-/// Differences are of irradiance in lux, weighted by area. Both files must have been solved with the same --elements or
-/// --max-edge.
+/// Differences are of irradiance in lux, weighted by area. If the scene is cut into other elements, the second solution is averaged on those of
+/// the first: what elements hide is part of the difference then, and error bars are compared of means only.
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Compare {
@@ -46,7 +46,7 @@ impl Compare {
             let (other, b) = input::solution(&self.b)?;
             let comparison = compare(&problem, &a, &other, &b).map_err(|error| {
                 let help = match error {
-                    Error::NotComparable { .. } => "solve the same scene with the same --elements or --max-edge",
+                    Error::NotComparable { .. } => "solve the same file with the same lights and materials",
                     _ => "solve the scene again",
                 };
                 Failure::usage(format!("{}, {}: {error}", self.a.display(), self.b.display())).with_help(help)
@@ -81,6 +81,9 @@ fn as_json(comparison: &Comparison, solutions: [&Solution; 2], remarks: &[String
 
 fn in_words(problem: &Problem, c: &Comparison) -> String {
     let mut text = format!("{}: {} elements\n", terminal::harmless(&problem.scene.name), count(c.elements as u64));
+    if let Some(others) = c.other_elements {
+        text += &format!("  other elements      {} of the second solution, averaged on these\n", count(others as u64));
+    }
     text += &format!("  RMS difference      {} of the mean irradiance", percent(c.rms));
     if c.expected_rms.is_finite() {
         text += &format!("; the error bars let expect {}", percent(c.expected_rms));
@@ -111,6 +114,9 @@ fn in_words(problem: &Problem, c: &Comparison) -> String {
         );
     }
     text += &match c.z {
+        None if c.other_elements.is_some() => {
+            "  z                   unknown: the elements are not the same\n".to_owned()
+        }
         None => "  z                   unknown: there are no error bars\n".to_owned(),
         Some(z) => format!(
             "  z                   mean {:.3}, standard deviation {:.3}, {} beyond 3, over {} elements\n",

@@ -55,11 +55,11 @@ fn bad_files_leave_old_outputs_as_they_were() {
 }
 
 #[test]
-fn solutions_of_other_elements_cannot_be_compared() {
+fn solutions_of_other_scenes_cannot_be_compared() {
     let folder = Folder::new();
     folder.prints(&with(&["solve", "-o", "a.isolux"], &SMALL));
-    folder.prints(&["solve", "box", "--elements", "600", "--rays", "1e4", "-o", "b.isolux"]);
-    assert!(folder.fails(2, &["compare", "a.isolux", "b.isolux"]).contains("different elements"));
+    folder.prints(&["solve", "cubes", "--elements", "600", "--rays", "1e4", "-o", "b.isolux"]);
+    assert!(folder.fails(2, &["compare", "a.isolux", "b.isolux"]).contains("different scenes"));
 }
 
 #[test]

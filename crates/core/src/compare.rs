@@ -1,8 +1,13 @@
-//! How two solutions of the same problem differ, and whether their error bars explain it.
+//! How two solutions of the same scene differ, and whether their error bars explain it.
 //!
 //! All numbers are of luminance irradiance `E` [lux]. With areas `A`, irradiances `a`, `b` and standard errors `s, t` of an
 //! element: the relative RMS difference is `sqrt(sum A (a - b)² / sum A)` over the mean of `(a + b) / 2`; the score of an
 //! element is `z = (a - b) / sqrt(s² + t²)`, about standard normal if the solutions are independent, unbiased and honest.
+//!
+//! If the scene is cut into other elements, the second solution is averaged on those of the first ([`elements`]). The difference is that of the meshes, too, and
+//! elements have no scores; means of scene and objects have.
+
+mod elements;
 
 use crate::math::Estimate;
 use crate::problem::Side;
@@ -13,6 +18,8 @@ use crate::{Certainty, Error, Problem, Solution};
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Comparison {
     pub elements: usize,
+    /// Number of elements of the second solution, if they are others.
+    pub other_elements: Option<usize>,
     /// Area-weighted RMS of the difference, relative to the mean irradiance of both; NaN if both are dark.
     pub rms: f64,
     /// The value of `rms` that the standard errors of independent solutions let expect; NaN while they are unknown.
@@ -79,28 +86,28 @@ pub struct Scores {
 /// Compares solution `a` of `problem` with solution `b` of `other`.
 ///
 /// # Errors
-/// [`Error::NotComparable`] if the two problems are not the same scene cut into the same elements.
+/// [`Error::NotComparable`] if the two problems are not the same scene.
 pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -> Result<Comparison, Error> {
-    if let Some(what) = problem.difference(other) {
+    if let Some(what) = problem.difference_of_scene(other) {
         return Err(Error::NotComparable { what });
     }
     let mesh = &problem.mesh;
+    let is_same = problem.has_elements_of(other);
+    let averaged = if is_same { Vec::new() } else { elements::irradiance_on(problem, other, b) };
+    let irradiance = [&a.irradiance, if is_same { &b.irradiance } else { &averaged }];
     let (mut area, mut sum, mut sum_sq, mut variance) = (0.0, 0.0, 0.0, 0.0);
-    let mut power = [0.0; 2];
     let mut largest = Largest::default();
     let mut scores = Vec::new();
     for e in mesh.elements() {
         let element_area = f64::from(mesh.area(e));
-        let lux = [a, b].map(|s| s.irradiance[e as usize].luminance_f64());
-        let errors = [a, b].map(|s| f64::from(luminance_error(s.std_error[e as usize])));
+        let lux = irradiance.map(|irradiance| irradiance[e as usize].luminance_f64());
+        let error = |s: &Solution| f64::from(luminance_error(s.std_error[e as usize]));
+        let errors = [error(a), if is_same { error(b) } else { f64::NAN }];
         let (difference, deviation) = (lux[0] - lux[1], errors[0].hypot(errors[1]));
         area += element_area;
         sum += element_area * 0.5 * (lux[0] + lux[1]);
         sum_sq += element_area * difference.powi(2);
         variance += element_area * deviation.powi(2);
-        for (power, solution) in power.iter_mut().zip([a, b]) {
-            *power += element_area * solution.radiosity(problem, e).luminance_f64();
-        }
         if difference.abs() > (largest.irradiance[0] - largest.irradiance[1]).abs() {
             largest = Largest { element: e, irradiance: lux };
         }
@@ -112,14 +119,21 @@ pub fn compare(problem: &Problem, a: &Solution, other: &Problem, b: &Solution) -
     let certainties = a.certainty.as_ref().zip(b.certainty.as_ref());
     Ok(Comparison {
         elements: mesh.len(),
+        other_elements: (!is_same).then(|| other.mesh.len()),
         rms: relative(sum_sq),
         expected_rms: relative(variance),
         largest,
-        power,
+        power: [power(problem, a), power(other, b)],
         mean: certainties.map(|(a, b)| Means::of(&a.scene, &b.scene)),
         objects: certainties.map_or(Vec::new(), |(a, b)| means_of_objects(problem, a, b)),
         z: Scores::of(&scores),
     })
+}
+
+/// Flux [lm] that leaves all surfaces.
+fn power(problem: &Problem, solution: &Solution) -> f64 {
+    let of_element = |e| f64::from(problem.mesh.area(e)) * solution.radiosity(problem, e).luminance_f64();
+    problem.mesh.elements().map(of_element).sum()
 }
 
 fn means_of_objects(problem: &Problem, a: &Certainty, b: &Certainty) -> Vec<ObjectMeans> {
@@ -229,15 +243,30 @@ mod tests {
     }
 
     #[test]
-    fn other_scenes_and_other_elements_are_refused() {
+    fn light_of_other_elements_is_averaged_and_another_scene_is_refused() {
         let first = problem();
-        let a = solution(&first, [1.0, 0.1], [1.0, 0.1]);
+        let a = solution(&first, [10.0, 3.0], [20.0, 0.0]);
         let mut scene = first.scene.clone();
         let finer = Problem::new(scene.clone(), Resolution::MaxEdge(0.5)).unwrap();
-        let refused = |other: &Problem| compare(&first, &a, other, &a).unwrap_err().to_string();
-        assert!(refused(&finer).contains("different elements"));
+        // The small triangle is darker on one side than on the other.
+        let mut b = solution(&finer, [15.0, 4.0], [20.0, 0.0]);
+        let small: Vec<u32> = finer.mesh.elements().filter(|&e| finer.mesh.triangle(e) == 0).collect();
+        small[..small.len() / 2].iter().for_each(|&e| b.irradiance[e as usize] = Rgb::grey(9.0));
+        let dark: f64 = small[..small.len() / 2].iter().map(|&e| f64::from(finer.mesh.area(e))).sum();
+        assert!(small.len() >= 16 && dark > 0.3 && dark < 0.7, "{} {dark}", small.len());
+        let c = compare(&first, &a, &finer, &b).unwrap();
+        let (small, mean) = (15.0 - 6.0 * dark, |small: f64| (0.5 * (10.0 + small) + 60.0) / 4.0);
+        assert!(c.elements == 2 && c.other_elements == Some(finer.mesh.len()), "{c:?}");
+        assert!((c.rms * mean(small) - (small - 10.0) / 2.0).abs() < 0.1, "{c:?}");
+        assert!(close(c.power[0], 35.0) && (c.power[1] - 0.5 * small - 30.0).abs() < 1e-4);
+        assert!(c.z.is_none() && c.expected_rms.is_nan());
+        let c = compare(&finer, &b, &first, &a).unwrap();
+        // Each element by itself differs by 1 or by 5 lux.
+        assert!(close(c.rms * mean(small), ((dark + 25.0 * (1.0 - dark)) / 4.0).sqrt()), "{c:?}");
+        assert_eq!(c.elements, finer.mesh.len());
         scene.materials[0].reflectivity = Rgb::grey(0.6);
         let whiter = Problem::new(scene, Resolution::Elements(2)).unwrap();
-        assert!(refused(&whiter).contains("different scenes"));
+        let refused = compare(&first, &a, &whiter, &a).unwrap_err().to_string();
+        assert!(refused.contains("different scenes"));
     }
 }

@@ -118,13 +118,19 @@ impl Problem {
     /// Why solutions of this problem and of the `other` have nothing in common; `None` if they are of the same scene, cut into the same
     /// elements.
     pub fn difference(&self, other: &Problem) -> Option<&'static str> {
-        if self.scene.hash() != other.scene.hash() {
-            Some("they are of different scenes (geometry, materials or lights)")
-        } else if self.mesh.cut() != other.mesh.cut() {
-            Some("the scene is cut into different elements")
-        } else {
-            None
-        }
+        let elements = || (!self.has_elements_of(other)).then_some("the scene is cut into different elements");
+        self.difference_of_scene(other).or_else(elements)
+    }
+
+    /// Why their scenes have nothing in common; `None` if they are the same.
+    pub fn difference_of_scene(&self, other: &Problem) -> Option<&'static str> {
+        let is_other = self.scene.hash() != other.scene.hash();
+        is_other.then_some("they are of different scenes (geometry, materials or lights)")
+    }
+
+    /// Whether the `other` problem of the same scene is cut into the same elements.
+    pub fn has_elements_of(&self, other: &Problem) -> bool {
+        self.mesh.cut() == other.mesh.cut()
     }
 }
 
