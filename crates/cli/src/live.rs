@@ -50,6 +50,11 @@ pub struct Live {
 }
 
 impl LiveArguments {
+    /// Whether the solve is shown.
+    pub fn is_asked(self) -> bool {
+        self.live
+    }
+
     /// Serves the page and opens the browser, if that was asked for.
     ///
     /// # Errors

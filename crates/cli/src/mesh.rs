@@ -33,21 +33,21 @@ pub struct MeshArguments {
     #[arg(long, value_name = "WHAT", default_value = "cut")]
     contacts: AtContacts,
 
-    /// Where elements are small: uniform, the same everywhere, or adaptive, where the light changes (at the edges of shadows, beside lamps). The elements of
-    /// an adaptive mesh hide half as much of the light on them, but have more noise: to the same error bar it takes half as long again or more. A quick solution
-    /// finds it, for some 20 rays an element; the same scene, --elements and --light make the same mesh, whatever the seed and the method (but for
-    /// few --rays or little --time)
-    #[arg(long, value_enum, default_value = "uniform", hide_possible_values = true)]
-    mesh: Mesh,
+    /// Where elements are small: adaptive, where the light changes (at the edges of shadows, beside lamps), or uniform, the same everywhere. As many elements hide
+    /// half as much of the light on them if they are adaptive, which they are but with --max-edge, for deterministic methods, and with --every and --live, whose
+    /// first draft comes at once. A quick solution finds the mesh, for some 20 rays an element; to the same error bar it takes half as long again or more than on
+    /// equal elements. The same scene, --elements and --light make the same mesh, whatever the seed and the method (but for few --rays or little --time)
+    #[arg(long, value_enum, hide_possible_values = true)]
+    mesh: Option<Mesh>,
 }
 
 impl MeshArguments {
-    /// How elements shall be spread.
-    pub fn spread(self) -> Spread {
-        match self.mesh {
+    /// How elements shall be spread, if that is said.
+    pub fn spread(self) -> Option<Spread> {
+        self.mesh.map(|mesh| match mesh {
             Mesh::Adaptive => Spread::Adaptive,
             Mesh::Uniform => Spread::Uniform,
-        }
+        })
     }
 
     /// Whether they shall be cut along what stands on them.
@@ -68,7 +68,7 @@ pub fn cut(
     display: &mut Display,
     check: impl Fn(&Problem) -> Result<(), Failure>,
 ) -> Result<(Meshed, Duration), Failure> {
-    if let (Spread::Adaptive, Resolution::MaxEdge(_)) = (wish.spread, wish.resolution) {
+    if let (Some(Spread::Adaptive), Resolution::MaxEdge(_)) = (wish.spread, wish.resolution) {
         let what = "--max-edge makes equal elements, and those of an adaptive mesh are not";
         return Err(Failure::usage(what).with_help("ask for --elements N, or leave out --mesh adaptive"));
     }
@@ -89,6 +89,6 @@ pub fn cut(
         display.clear();
         terminal::note("the time is too short to find out where the light changes: the elements are equal");
     }
-    let took = if wish.spread == Spread::Adaptive { start.elapsed() } else { Duration::ZERO };
+    let took = if wish.is_adaptive() { start.elapsed() } else { Duration::ZERO };
     Ok((meshed, took))
 }

@@ -17,7 +17,7 @@ use crate::solver::SolverArguments;
 use crate::summary::Summary;
 use crate::{input, terminal};
 use isolux_core::Problem;
-use isolux_core::adaptive::{Meshed, Wish};
+use isolux_core::adaptive::{Meshed, Spread, Wish};
 use isolux_core::solvers::Progress;
 use isolux_core::solvers::monte_carlo::Budget;
 use isolux_io::checkpoint_file::{Checkpoint, Clock};
@@ -235,7 +235,7 @@ impl Solve {
         let check = |problem: &Problem| self.solver.solver(&chosen, problem, budget).map(drop);
         let wish = Wish {
             resolution,
-            spread: self.mesh.spread(),
+            spread: self.mesh.spread().or(self.shows_drafts().then_some(Spread::Uniform)),
             along_contacts: self.mesh.along_contacts(),
             budget,
             light: self.solver.light(),
@@ -243,6 +243,11 @@ impl Solve {
         let (Meshed { problem, budget }, took) = mesh::cut(wish, scene, self.budget.time, display, check)?;
         let solver = self.solver.solver(&chosen, &problem, budget)?;
         Ok(Checkpoint { problem, solver, clock: Clock { solved: took, limit: self.budget.time } })
+    }
+
+    /// Whether somebody waits for the first light, which is there sooner where no mesh is to be found.
+    fn shows_drafts(&self) -> bool {
+        self.every.is_some() || self.live.is_asked()
     }
 
     fn report(&self, summary: &Summary) -> Result<(), Failure> {

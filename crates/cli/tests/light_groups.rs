@@ -58,8 +58,8 @@ fn lamps_are_solved_apart_and_mixed() {
 #[test]
 fn lists_put_lamps_together_and_runs_go_on() {
     let folder = Folder::new();
-    let list = ["--light-groups", "day=window*;evening=desk lamp*, pendant*", "--checkpoint", "a.checkpoint"];
-    let text = office(&folder, &with(&list, &["-o", "a.isolux", "--json"]));
+    let groups = ["--mesh", "uniform", "--light-groups", "day=window*;evening=desk lamp*, pendant*"];
+    let text = office(&folder, &with(&groups, &["--checkpoint", "a.checkpoint", "-o", "a.isolux", "--json"]));
     let solved: Value = serde_json::from_str(&text).unwrap();
     let names: Vec<&Value> = solved["light_groups"].as_array().unwrap().iter().map(|group| &group["name"]).collect();
     assert_eq!(names, ["day", "evening", "rest"]);
@@ -70,11 +70,11 @@ fn lists_put_lamps_together_and_runs_go_on() {
     assert!(more["parameters"]["extended from"].as_str().unwrap().contains("400000"));
     assert!(folder.prints(&["mix", "b.isolux"]).contains("evening"));
     // Merged solutions have the groups merged.
-    office(&folder, &["--light-groups", "day=window*;evening=desk lamp*, pendant*", "--seed", "2", "-o", "c.isolux"]);
+    office(&folder, &with(&groups, &["--seed", "2", "-o", "c.isolux"]));
     folder.prints(&["merge", "a.isolux", "c.isolux", "-o", "merged.isolux", "-o", "merged.csv"]);
     let mixed = folder.prints(&["mix", "merged.isolux", "-o", "mixed.csv"]);
     assert!(mixed.contains("evening") && folder.read("mixed.csv") == folder.read("merged.csv"));
-    office(&folder, &["--light-groups", "objects", "--seed", "3", "-o", "d.isolux"]);
+    office(&folder, &["--mesh", "uniform", "--light-groups", "objects", "--seed", "3", "-o", "d.isolux"]);
     assert!(folder.fails(2, &["merge", "a.isolux", "d.isolux", "-o", "e.csv"]).contains("number 2"));
 }
 

@@ -120,7 +120,7 @@ impl Request {
     ) -> Result<(Problem, Limits), Fail> {
         let scene = scene.inner.clone();
         let budget = limits.budget(&scene, self)?;
-        let spread = named("mesh", cut.mesh, &Spread::ALL, Spread::name)?.unwrap_or_default();
+        let spread = named("mesh", cut.mesh, &Spread::ALL, Spread::name)?;
         let resolution = self.chosen.resolution(cut.elements, cut.max_edge);
         let (along_contacts, light) = (cut.contacts.unwrap_or(true), self.light);
         let wish = Wish { resolution, spread, along_contacts, budget, light };
@@ -136,7 +136,7 @@ impl Request {
             })
         };
         let Meshed { problem, budget } = in_background(py, threads, look, work)??;
-        let took = if spread == Spread::Adaptive { start.elapsed() } else { Duration::ZERO };
+        let took = if wish.is_adaptive() { start.elapsed() } else { Duration::ZERO };
         Ok((Problem::new(problem), limits.left(budget, took)))
     }
 }

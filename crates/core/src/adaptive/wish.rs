@@ -19,12 +19,11 @@ const SEED: u64 = 0x6d65_7368;
 pub const PATIENCE: f64 = 0.04;
 
 /// How elements are spread.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spread {
     /// Small where the light changes.
     Adaptive,
     /// Equal, as far as triangles let them.
-    #[default]
     Uniform,
 }
 
@@ -43,7 +42,8 @@ impl Spread {
 #[derive(Clone, Copy, Debug)]
 pub struct Wish {
     pub resolution: Resolution,
-    pub spread: Spread,
+    /// If nobody says how, elements follow the light wherever they may be clusters.
+    pub spread: Option<Spread>,
     /// Whether elements are cut along what stands on them.
     pub along_contacts: bool,
     pub budget: Budget,
@@ -98,16 +98,21 @@ impl Wish {
         Ok(Meshed { problem, budget: taken_off(budget, rays) })
     }
 
+    /// Whether elements are to follow the light.
+    pub fn is_adaptive(&self) -> bool {
+        self.spread.map_or(matches!(self.resolution, Resolution::Clustered(_)), |spread| spread == Spread::Adaptive)
+    }
+
     /// How many adaptive elements there shall be; `None` if they shall be equal.
     fn adaptive_elements(&self, scene: &Scene) -> Result<Option<u64>, Error> {
-        match (self.spread, self.resolution) {
-            (Spread::Uniform, _) => Ok(None),
-            (Spread::Adaptive, Resolution::MaxEdge(_)) => Err(Error::Parameter {
+        match self.resolution {
+            _ if !self.is_adaptive() => Ok(None),
+            Resolution::MaxEdge(_) => Err(Error::Parameter {
                 name: "mesh",
                 value: "adaptive".into(),
                 allowed: "a longest edge makes equal elements; ask for a number of elements, or for a uniform mesh",
             }),
-            (Spread::Adaptive, resolution) => Ok(resolution.most(scene)),
+            resolution => Ok(resolution.most(scene)),
         }
     }
 }

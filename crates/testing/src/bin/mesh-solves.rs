@@ -46,7 +46,7 @@ fn main() -> Result<()> {
                 let start = Instant::now();
                 let budget = Budget::Rays(share * elements);
                 let (resolution, light) = (Resolution::Clustered(elements), LightPart::All);
-                let wish = Wish { resolution, spread, along_contacts, budget, light };
+                let wish = Wish { resolution, spread: Some(spread), along_contacts, budget, light };
                 let Meshed { problem, budget, .. } =
                     wish.cut::<Error>(scene.clone(), |_| Ok(()), |_| ControlFlow::Continue(()))?;
                 let meshed = start.elapsed().as_secs_f64();
