@@ -12,6 +12,7 @@ mod image;
 mod insides;
 mod light;
 mod light_groups;
+mod lightmap_uvs;
 mod material;
 mod shape;
 mod shells;

@@ -3,8 +3,9 @@
 //! One mesh and one node for each object that has triangles, in their order, so triangles come object by object. Read
 //! back it is the same scene, up to the last digit of emissions and directions. Exitances become luminances in cd/m²
 //! (`L = Be / pi`, as KHR_materials_emissive_strength counts), intensities stay in candela and lux
-//! (KHR_lights_punctual). Surfaces are written as rough non-metals, so that other viewers show them matt. glTF knows no
-//! exact sphere; one is written as triangles whose corners lie on it.
+//! (KHR_lights_punctual). Surfaces are written as rough non-metals, so that other viewers show them matt. Coordinates in a
+//! lightmap are `TEXCOORD_1`, and keep every bit. glTF knows no exact sphere; one is written as triangles whose corners lie
+//! on it, without a lightmap.
 
 use super::glb_container::GlbBuilder;
 use super::image::encode_png;
@@ -40,7 +41,7 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
         glb.add_image_png(&image.name, &encode_png(image.width, image.height, &image.texels)?);
     }
     for material in &scene.materials {
-        let material = material_json(&mut glb, material, 1);
+        let material = material_json(&mut glb, material, emission_set(scene));
         glb.push("materials", material);
     }
     let mut nodes = Vec::new();
@@ -61,6 +62,11 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
     glb.finish()
 }
 
+/// Coordinates of the texture of emission: behind those of colour and those of the lightmap, if there are some.
+fn emission_set(scene: &Scene) -> u32 {
+    1 + u32::from(!scene.lightmap_uvs.is_empty())
+}
+
 /// Numbers of the triangles of each object.
 fn triangles_by_object(scene: &Scene) -> Vec<Vec<u32>> {
     let mut lists = vec![Vec::new(); scene.objects.len()];
@@ -72,9 +78,11 @@ fn triangles_by_object(scene: &Scene) -> Vec<Vec<u32>> {
 
 /// Writes an object as a mesh; gives the index of its node.
 fn object_node(glb: &mut GlbBuilder, scene: &Scene, object: usize, triangles: &[u32]) -> usize {
-    let (vertices, indices) = own_vertices(scene, triangles);
+    let (numbers, indices) = own_vertices(scene, triangles);
+    let vertices: Vec<Vertex> = numbers.iter().map(|&v| scene.vertices[v as usize]).collect();
     let object = &scene.objects[object];
     let material = &scene.materials[object.material as usize];
+    let has_map = !scene.lightmap_uvs.is_empty();
     let positions: Vec<[f32; 3]> = vertices.iter().map(|v| v.position.to_array()).collect();
     let mut attributes = Map::new();
     attributes.insert("POSITION".into(), json!(glb.add_f32x3(&positions)));
@@ -82,13 +90,18 @@ fn object_node(glb: &mut GlbBuilder, scene: &Scene, object: usize, triangles: &[
         let colors: Vec<[f32; 3]> = vertices.iter().map(|v| v.color.to_array()).collect();
         attributes.insert("COLOR_0".into(), json!(glb.add_f32x3(&colors)));
     }
-    if material.reflectivity_texture.is_some() || material.emission_texture.is_some() {
+    // Sets are numbered without gaps.
+    if material.reflectivity_texture.is_some() || material.emission_texture.is_some() || has_map {
         let uvs: Vec<[f32; 2]> = vertices.iter().map(|v| v.uv.to_array()).collect();
         attributes.insert("TEXCOORD_0".into(), json!(glb.add_f32x2(&uvs)));
     }
+    if has_map {
+        let uvs: Vec<[f32; 2]> = numbers.iter().map(|&v| scene.lightmap_uvs[v as usize].to_array()).collect();
+        attributes.insert("TEXCOORD_1".into(), json!(glb.add_f32x2(&uvs)));
+    }
     if material.emission_texture.is_some() {
         let uvs: Vec<[f32; 2]> = vertices.iter().map(|v| v.emission_uv.to_array()).collect();
-        attributes.insert("TEXCOORD_1".into(), json!(glb.add_f32x2(&uvs)));
+        attributes.insert(format!("TEXCOORD_{}", emission_set(scene)), json!(glb.add_f32x2(&uvs)));
     }
     let indices = glb.add_indices(&indices);
     let primitive = json!({ "attributes": attributes, "indices": indices, "material": object.material });
@@ -96,15 +109,15 @@ fn object_node(glb: &mut GlbBuilder, scene: &Scene, object: usize, triangles: &[
     glb.push("nodes", json!({ "name": object.name, "mesh": mesh }))
 }
 
-/// The vertices that `triangles` use, in the order of first use, and the triangles' indices into them.
-fn own_vertices(scene: &Scene, triangles: &[u32]) -> (Vec<Vertex>, Vec<u32>) {
+/// Numbers of the vertices that `triangles` use, in the order of first use, and the triangles' indices into them.
+fn own_vertices(scene: &Scene, triangles: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let used = triangles.iter().flat_map(|&t| scene.triangles[t as usize].vertices);
     let mut numbers = std::collections::HashMap::new();
     let mut vertices = Vec::new();
     let indices = used
         .map(|v| {
             *numbers.entry(v).or_insert_with(|| {
-                vertices.push(scene.vertices[v as usize]);
+                vertices.push(v);
                 vertices.len() as u32 - 1
             })
         })
@@ -202,7 +215,13 @@ fn placed_node(name: &str, position: Vec3, rotation: Quat) -> Value {
 /// The same scene with a sphere made of triangles.
 fn tessellated(scene: &Scene) -> Scene {
     let sphere = geometry::for_scene(scene);
-    let mut flat = Scene { vertices: Vec::new(), triangles: Vec::new(), shape: Shape::Triangles, ..scene.clone() };
+    let mut flat = Scene {
+        vertices: Vec::new(),
+        triangles: Vec::new(),
+        lightmap_uvs: Vec::new(),
+        shape: Shape::Triangles,
+        ..scene.clone()
+    };
     for (t, triangle) in scene.triangles.iter().enumerate() {
         for cell in 0..cells::count(SPHERE_DIVISIONS) {
             let first = flat.vertices.len() as u32;
@@ -218,6 +237,9 @@ fn tessellated(scene: &Scene) -> Scene {
 mod tests {
     use super::*;
     use crate::fixture;
+    use crate::import::{self, ImportOptions};
+    use glam::Vec2;
+    use std::path::Path;
 
     /// Read with the gltf crate, not with our importer: two mistakes must not cancel.
     #[test]
@@ -284,6 +306,29 @@ mod tests {
         let expected = &scene.vertices[20..];
         assert!(colors.iter().copied().eq(expected.iter().map(|v| v.color.to_array())));
         assert!(uvs.iter().copied().eq(expected.iter().map(|v| v.emission_uv.to_array())));
+    }
+
+    /// Also where materials have textures of their own, and where vertices were split for it.
+    #[test]
+    fn coordinates_in_a_lightmap_come_back_to_the_last_bit() {
+        let mut scene = fixture::scene();
+        let count = scene.triangles.len() as f32;
+        let corners: Vec<[Vec2; 3]> = (0..scene.triangles.len())
+            .map(|t| [Vec2::ZERO, Vec2::X, Vec2::Y].map(|uv| (uv + Vec2::X * t as f32) / count))
+            .collect();
+        scene.set_lightmap_corners(&corners).unwrap();
+        let importer = import::FORMATS.iter().find(|format| format.extensions.contains(&"glb")).unwrap();
+        let read = (importer.read)(Path::new("a.glb"), &write(&scene).unwrap(), &ImportOptions::default()).unwrap();
+        assert_eq!(read.lightmap_corners().unwrap(), corners);
+        let of_textures = |scene: &Scene, t: usize| {
+            scene.triangles[t].vertices.map(|v| scene.vertices[v as usize]).map(|v| (v.color, v.uv, v.emission_uv))
+        };
+        assert!((10..12).all(|t| of_textures(&read, t) == of_textures(&scene, t)));
+        assert_eq!(read.materials[2].emission_texture.map(|t| t.wrap_u), Some(Wrap::Repeat));
+
+        let mut sphere = isolux_core::scene::builtin::builtin("sphere").unwrap();
+        sphere.lightmap_uvs = vec![Vec2::ZERO; sphere.vertices.len()];
+        assert!(write(&sphere).is_ok());
     }
 
     #[test]
