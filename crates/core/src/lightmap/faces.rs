@@ -82,6 +82,11 @@ pub fn brighter_faces(problem: &Problem, field: &VertexField) -> Vec<Face> {
     in_order(problem, (0..problem.scene.triangles.len() as u32).into_par_iter().map(side).collect())
 }
 
+/// The front of every triangle.
+pub fn fronts(problem: &Problem) -> Vec<Face> {
+    in_order(problem, (0..problem.scene.triangles.len() as u32).map(|t| (t, false)).collect())
+}
+
 /// Mean illuminance [lux] on front and back.
 fn side_light(problem: &Problem, field: &VertexField, triangle: u32) -> [f32; 2] {
     if !problem.mesh.is_two_sided(triangle) {

@@ -18,6 +18,8 @@ mod existing;
 mod faces;
 mod fill;
 mod lit;
+mod patch;
+mod pieces;
 mod summary;
 mod texels;
 mod unwrap;
@@ -25,6 +27,7 @@ mod unwrap;
 pub use atlas::{Atlas, Border, Density, Layout, Origin};
 pub use faces::Face;
 pub use lit::radiosity;
+pub use pieces::{Pieces, pieces};
 pub use summary::{ObjectTexels, per_object};
 pub use texels::{Texel, Texels};
 

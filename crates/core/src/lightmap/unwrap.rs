@@ -1,25 +1,20 @@
 //! Coordinates for surfaces that have none: cut into charts, flattened and packed by the crate `uvunwrap`.
 //!
 //! Charts are grown along surfaces, flattened by least squares conformal maps (Lévy et al. 2002) and as rigidly as
-//! possible (Liu et al. 2008), and packed by their shapes. What is ours: which edges must be cut. A lookup across an
-//! edge of a chart mixes the texels of both sides, so charts end where light jumps: at sharp edges, and where something
-//! stands on a surface. Texels are equally large everywhere.
+//! possible (Liu et al. 2008), and packed by their shapes. What is ours: which edges must be cut ([`super::patch`]).
+//! Texels are equally large everywhere.
 
 use super::atlas::{MOST_SIZE, area};
+use super::patch::Patch;
 use super::{Density, Face, Layout};
-use crate::math::weld::{self, Weld};
-use crate::view::crease::CREASE_ANGLE;
 use crate::{Error, Problem};
-use glam::{Vec2, Vec3};
-use std::collections::HashMap;
+use glam::Vec2;
 use uvunwrap::{MeshInput, Options, Packing};
 
 /// More triangles than this are packed in rows, which is several times faster and less dense.
 const MANY: usize = 20_000;
 /// Share of the map that surfaces cover, in estimates.
 const USED: f64 = 0.3;
-/// Barycentric coordinates this close to a border lie on it.
-const ON_BORDER: f32 = 1e-5;
 
 /// Coordinates of faces.
 pub struct Unwrapped {
@@ -34,10 +29,7 @@ pub struct Unwrapped {
 /// # Errors
 /// [`Error::Lightmap`] if the map would have to be larger than graphics cards take; it says what fits.
 pub fn unwrap(problem: &Problem, faces: &[Face], layout: &Layout) -> Result<Unwrapped, Error> {
-    let tolerance = (weld::TOLERANCE * problem.geometry.bounding_sphere().1).max(f32::MIN_POSITIVE);
-    let key = |face: &Face| (face.object(problem), face.back);
-    let patches: Vec<Patch> =
-        faces.chunk_by(|a, b| key(a) == key(b)).map(|faces| Patch::new(problem, faces, tolerance)).collect();
+    let patches = Patch::all(problem, faces);
     let surface: f64 = faces.iter().map(|face| area(problem, face)).sum();
     let density = match layout.density {
         Density::Size(page_size) => uvunwrap::Density::Auto { page_size },
@@ -56,7 +48,7 @@ pub fn unwrap(problem: &Problem, faces: &[Face], layout: &Layout) -> Result<Unwr
         block_align: layout.align_blocks,
         ..Options::default()
     };
-    let meshes: Vec<MeshInput> = patches.iter().map(Patch::input).collect();
+    let meshes: Vec<MeshInput> = patches.iter().map(input).collect();
     let atlas = uvunwrap::generate(&meshes, &options).map_err(|error| Error::Lightmap { what: error.to_string() })?;
     if let Density::TexelsPerMetre(asked) = layout.density
         && atlas.width.max(atlas.height) > MOST_SIZE
@@ -82,6 +74,10 @@ pub fn unwrap(problem: &Problem, faces: &[Face], layout: &Layout) -> Result<Unwr
     Ok(Unwrapped { width: atlas.width.max(1), height: atlas.height.max(1), uv })
 }
 
+fn input(patch: &Patch) -> MeshInput<'_> {
+    MeshInput { seams: Some(&patch.seams), ..MeshInput::new(&patch.positions, patch.corners.as_flattened()) }
+}
+
 fn too_large(needed: f64, asked: f32, surface: f64) -> Error {
     let fits = f64::from(MOST_SIZE) * (USED / surface).sqrt();
     let what = format!(
@@ -90,64 +86,4 @@ fn too_large(needed: f64, asked: f32, surface: f64) -> Error {
         if fits > 10.0 { format!("{fits:.0}") } else { format!("{fits:.2}") }
     );
     Error::Lightmap { what }
-}
-
-/// One side of an object, its corners welded.
-struct Patch {
-    positions: Vec<[f32; 3]>,
-    indices: Vec<u32>,
-    /// Edges that must be cut, from each corner to the next.
-    seams: Vec<[bool; 3]>,
-}
-
-impl Patch {
-    fn new(problem: &Problem, faces: &[Face], tolerance: f32) -> Patch {
-        let mut weld = Weld::new(tolerance);
-        let mut corners = Vec::with_capacity(faces.len());
-        for face in faces {
-            let [a, b, c] = face.positions(problem).map(|p| weld.number(p));
-            corners.push(if face.back { [a, c, b] } else { [a, b, c] });
-        }
-        let positions: Vec<Vec3> = weld.into_positions();
-        let normal = |[a, b, c]: [u32; 3]| {
-            let [a, b, c] = [a, b, c].map(|v| positions[v as usize]);
-            (b - a).cross(c - a).normalize_or_zero()
-        };
-        let normals: Vec<Vec3> = corners.iter().map(|&corners| normal(corners)).collect();
-        let mut around: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
-        for (f, corners) in corners.iter().enumerate() {
-            (0..3).for_each(|k| around.entry(edge(corners, k)).or_default().push(f));
-        }
-        let is_sharp = |f: usize, edge: [u32; 2]| {
-            around[&edge].iter().any(|&other| normals[other].dot(normals[f]) < CREASE_ANGLE.cos())
-        };
-        let seams = (0..corners.len()).map(|f| {
-            let stands_on = foot(problem, &faces[f]);
-            [0, 1, 2].map(|k| stands_on[k] || is_sharp(f, edge(&corners[f], k)))
-        });
-        let seams = seams.collect();
-        Patch { positions: positions.iter().map(Vec3::to_array).collect(), indices: corners.concat(), seams }
-    }
-
-    fn input(&self) -> MeshInput<'_> {
-        MeshInput { seams: Some(&self.seams), ..MeshInput::new(&self.positions, &self.indices) }
-    }
-}
-
-/// Edge `k` of a face with these corners.
-fn edge(corners: &[u32; 3], k: usize) -> [u32; 2] {
-    let (a, b) = (corners[k], corners[(k + 1) % 3]);
-    [a.min(b), a.max(b)]
-}
-
-/// On which edges of a face something stands, in the order of its corners as they are seen.
-fn foot(problem: &Problem, face: &Face) -> [bool; 3] {
-    let mesh = &problem.mesh;
-    let middles = [Vec2::new(0.5, 0.0), Vec2::splat(0.5), Vec2::new(0.0, 0.5)];
-    let [ab, bc, ca] = middles.map(|middle| {
-        let (patch, on_patch) = mesh.patch_at(face.triangle, middle);
-        let off = [on_patch.y, 1.0 - on_patch.x - on_patch.y, on_patch.x];
-        mesh.beside(patch).iter().zip(off).any(|(stands_on, off)| *stands_on && off.abs() < ON_BORDER)
-    });
-    if face.back { [ca, bc, ab] } else { [ab, bc, ca] }
 }
