@@ -61,7 +61,7 @@ test: viewer
 # The wheel is built and installed into an environment of its own, with the versions of python/constraints.txt.
 PYTHON = python3
 PYTHON_ENV = target/python
-PYTHON_NEEDS = maturin mypy numpy matplotlib pandas pandas-stubs pytest pyvista ruff scipy tqdm trimesh
+PYTHON_NEEDS = maturin mypy numpy matplotlib pandas pandas-stubs pytest pyvista ruff scipy tqdm trimesh xatlas
 
 test-python:
 	@if $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then $(MAKE) run-test-python; \

@@ -58,6 +58,7 @@ from .scene import Scene, load
 from .solution import Solution, open
 from .solving import solve
 from .studies import Slope, Study, Verdict, study
+from .unwrap import Charts, unwrap
 
 __version__ = _native.__version__
 
@@ -78,6 +79,7 @@ __all__ = [
     "AccuracyWarning",
     "Balance",
     "Camera",
+    "Charts",
     "Comparison",
     "Convergence",
     "EmptyScene",
@@ -136,4 +138,5 @@ __all__ = [
     "study",
     "testing",
     "to_pyvista",
+    "unwrap",
 ]

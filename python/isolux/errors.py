@@ -208,6 +208,11 @@ class LightmapError(Error, ValueError):
         super().__init__(message)
         self.what = what
 
+    @classmethod
+    def of(cls, what: str) -> LightmapError:
+        """The error that says `what`."""
+        return cls(f"there is no such lightmap: {what}", what)
+
 
 class NoViewer(Error, RuntimeError):
     """A page (.html) cannot be written: isolux was built without the viewer, for npm was not installed."""

@@ -62,6 +62,14 @@ def _array(name: str, values: npt.ArrayLike, kind: Any) -> npt.NDArray[Any]:
     return np.ascontiguousarray(array, dtype=kind)
 
 
+def lightmap_corners(corners: npt.ArrayLike, triangles: int) -> npt.NDArray[np.float32]:
+    """Coordinates in a lightmap, those of the three corners of a triangle in each row. That they are finite the engine sees."""
+    array = np.asarray(corners, dtype=float)
+    if array.shape != (triangles, 3, 2):
+        raise ParameterError.of("lightmap_uvs", f"an array of shape {array.shape}", f"a pair for each corner, shape ({triangles}, 3, 2)")
+    return np.ascontiguousarray(array.reshape(-1, 6), dtype=np.float32)
+
+
 def _names(objects: npt.ArrayLike | None, count: int) -> tuple[list[str], npt.NDArray[np.int64]]:
     """Names in the order in which they appear, and the number of that of each triangle."""
     if objects is None:

@@ -250,6 +250,22 @@ class Scene:
         return self._native.triangle_objects()
 
     @property
+    def lightmap_uvs(self) -> Floats | None:
+        """Coordinates in a lightmap of the three corners of each triangle (glTF `TEXCOORD_1`), a copy of shape (m, 3, 2), or `None`.
+        (0, 0) is the upper left corner of the map, (1, 1) the lower right one. `isolux.unwrap` makes some.
+
+        Assign others, or `None`, to change them; they change no solution. A vertex is split where corners that share it differ: copies,
+        alike in all else, come behind the vertices there were. Wrong shapes raise `ParameterError`, numbers that are not finite
+        `InvalidScene`.
+        """
+        corners = self._native.lightmap_uvs()
+        return None if corners is None else corners.reshape(-1, 3, 2)
+
+    @lightmap_uvs.setter
+    def lightmap_uvs(self, corners: npt.ArrayLike | None) -> None:
+        self._native.set_lightmap_uvs(None if corners is None else meshes.lightmap_corners(corners, len(self.triangles)))
+
+    @property
     def bounds(self) -> Floats:
         """Least and greatest corner of the box around it [m], shape (2, 3)."""
         return np.array(self._native.bounds, dtype=np.float32)

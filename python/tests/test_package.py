@@ -13,7 +13,7 @@ from conftest import ROOT
 from isolux import errors
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
-TUTORIAL = ROOT / "docs" / "python.md"
+PAGES = [ROOT / "docs" / "python.md", ROOT / "docs" / "lightmaps.md", ROOT / "README.md"]
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
@@ -29,9 +29,10 @@ def blocks(text: str) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.parametrize("page", [TUTORIAL, ROOT / "README.md"], ids=lambda path: path.stem)
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
 def test_what_the_pages_show_runs_word_by_word(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib")
+    pytest.importorskip("xatlas")
     monkeypatch.chdir(tmp_path)
     code = blocks(page.read_text(encoding="utf-8"))
     assert code

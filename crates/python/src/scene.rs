@@ -5,10 +5,13 @@
 use crate::background::to_its_end;
 use crate::fail::Fail;
 use crate::view::{numbers, rows};
-use isolux_core::Error;
+use glam::Vec2;
+use isolux_core::lightmap::pieces;
+use isolux_core::mesh::Resolution;
 use isolux_core::scene::builtin::{builtin, is_builtin};
 use isolux_core::scene::check::check;
 use isolux_core::scene::{self, Fault, Material, Object, Triangle, Vertex};
+use isolux_core::{Error, Problem};
 use isolux_io::export::scene_glb;
 use isolux_io::files::OutputFile;
 use isolux_io::import::{ImportOptions, Insides, LightUnits, read_scene};
@@ -16,6 +19,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2}
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::mem::take;
 use std::path::PathBuf;
 
 #[pyclass(module = "isolux._native")]
@@ -162,17 +166,46 @@ impl Scene {
         Ok(())
     }
 
-    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Rows<'py, f32>> {
         let positions: Vec<[f32; 3]> = self.inner.vertices.iter().map(|vertex| vertex.position.to_array()).collect();
         two_dimensional(py, positions)
     }
 
-    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Rows<'py, u32>> {
         two_dimensional(py, self.inner.triangles.iter().map(|triangle| triangle.vertices).collect())
     }
 
     fn triangle_objects<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         self.inner.triangles.iter().map(|triangle| triangle.object).collect::<Vec<_>>().into_pyarray(py)
+    }
+
+    /// Coordinates in the lightmap, those of the three corners of a triangle in each row.
+    fn lightmap_uvs<'py>(&self, py: Python<'py>) -> PyResult<Option<Rows<'py, f32>>> {
+        let numbers = |[a, b, c]: [Vec2; 3]| [a.x, a.y, b.x, b.y, c.x, c.y];
+        let corners = self.inner.lightmap_corners();
+        corners.map(|corners| two_dimensional(py, corners.into_iter().map(numbers).collect())).transpose()
+    }
+
+    /// Likewise; vertices are split where corners differ.
+    fn set_lightmap_uvs(&mut self, corners: Option<PyReadonlyArray2<f32>>) -> Result<(), Fail> {
+        let Some(corners) = corners else {
+            self.inner.lightmap_uvs.clear();
+            return Ok(());
+        };
+        let corners = rows::<f32, 6>(&corners, "lightmap_uvs")?;
+        let pairs = |&[a, b, c, d, e, f]: &[f32; 6]| [Vec2::new(a, b), Vec2::new(c, d), Vec2::new(e, f)];
+        Ok(self.inner.set_lightmap_corners(&corners.iter().map(pairs).collect::<Vec<_>>())?)
+    }
+
+    /// Positions and corners of the pieces that end where charts of a lightmap do, when it is cut as it is by default.
+    fn pieces<'py>(&self, py: Python<'py>) -> Result<(Rows<'py, f32>, Rows<'py, u32>), Fail> {
+        let scene = self.inner.clone();
+        let pieces = to_its_end(py, || {
+            let resolution = Resolution::default();
+            let detail = resolution.typical_edge(&scene);
+            pieces(&Problem::cut_along_contacts(scene, resolution, detail)?)
+        })?;
+        Ok((two_dimensional(py, pieces.positions)?, two_dimensional(py, pieces.corners)?))
     }
 
     /// What is in it and what is wrong with it.
@@ -195,12 +228,18 @@ impl Scene {
     fn edit(&mut self, change: impl FnOnce(&mut scene::Scene) -> Result<(), Fail>) -> Result<(), Fail> {
         let scene::Scene { materials, objects, lights, cameras, .. } = &self.inner;
         let before = (materials.clone(), objects.clone(), lights.clone(), cameras.clone());
-        // Vertices and triangles are as they were, and there may be many.
-        let vertices = std::mem::take(&mut self.inner.vertices);
-        let triangles = std::mem::take(&mut self.inner.triangles);
-        let shape = std::mem::take(&mut self.inner.shape);
+        // What belongs to vertices and triangles is as it was, and there may be much of it.
+        let surfaces = scene::Scene {
+            vertices: take(&mut self.inner.vertices),
+            triangles: take(&mut self.inner.triangles),
+            shape: take(&mut self.inner.shape),
+            hidden_backs: take(&mut self.inner.hidden_backs),
+            lightmap_uvs: take(&mut self.inner.lightmap_uvs),
+            ..scene::Scene::default()
+        };
         let changed = change(&mut self.inner).and_then(|()| Ok(self.inner.validate()?));
-        (self.inner.vertices, self.inner.triangles, self.inner.shape) = (vertices, triangles, shape);
+        let scene::Scene { vertices, triangles, shape, hidden_backs, lightmap_uvs, .. } = surfaces;
+        self.inner = scene::Scene { vertices, triangles, shape, hidden_backs, lightmap_uvs, ..take(&mut self.inner) };
         if changed.is_err() {
             (self.inner.materials, self.inner.objects, self.inner.lights, self.inner.cameras) = before;
         }
@@ -230,11 +269,14 @@ fn no_part(k: usize, count: usize) -> Fail {
     Fault { place: k.to_string(), what: format!("there are only {count}") }.into()
 }
 
+/// A two-dimensional array.
+pub type Rows<'py, T> = Bound<'py, PyArray2<T>>;
+
 /// An array with a row for each.
 pub fn two_dimensional<'py, T: numpy::Element, const N: usize>(
     py: Python<'py>,
     rows: Vec<[T; N]>,
-) -> PyResult<Bound<'py, PyArray2<T>>> {
+) -> PyResult<Rows<'py, T>> {
     use numpy::PyArrayMethods;
     let count = rows.len();
     rows.into_flattened().into_pyarray(py).reshape([count, N])
