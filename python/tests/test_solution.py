@@ -1,8 +1,7 @@
 """Solutions: tables, files, pictures, plots, light groups, merging and comparing."""
 
-from pathlib import Path
-
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
