@@ -44,7 +44,9 @@ class Comparison:
 
 
 def compare(a: Solution, b: Solution) -> Comparison:
-    """How two solutions of the same scene differ. If it is cut into other elements, `b` is averaged on those of `a`: only means have scores then.
+    """How two solutions of the same scene differ.
+
+    If it is cut into other elements, `b` is averaged on those of `a`, and only means have scores.
 
     Raises:
         NotComparable: they are of different scenes.

@@ -48,8 +48,8 @@ def solve(
         elements: pieces of surface that get one value each, about so many; 400,000 unless said otherwise (2000 for deterministic methods).
             Small triangles of smooth surfaces are put together.
         max_edge: instead, the longest edge of an element [m].
-        mesh: "adaptive" elements are small where the light changes, as they are unless said otherwise; "uniform" ones are equal, as they are
-            for little time, with `max_edge` and for deterministic methods.
+        mesh: "adaptive" elements are small where the light changes, as they are unless said otherwise; "uniform" ones are equal, as they
+            are for little time, with `max_edge` and for deterministic methods.
         contacts: whether elements are cut where others stand on them, so that no light passes below; they are unless said otherwise.
         error: goes on until the error is at most this share of the mean irradiance: 0.02 is two hundredths. `rays` and `time` limit it;
             if they are too little an `AccuracyWarning` says so.
