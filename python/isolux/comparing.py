@@ -29,7 +29,7 @@ class Comparison:
     rms: float
     """RMS difference of the irradiance by area, relative to the mean of both."""
     expected_rms: float
-    """What the standard errors of independent solutions let expect of it; `nan` if they are not known."""
+    """What the standard errors of independent solutions let expect of it; `nan` if they are not known, or the elements are others."""
     power: tuple[float, float]
     """Flux that leaves all surfaces [lm], in each of them."""
     z: dict[str, float]
@@ -40,7 +40,8 @@ class Comparison:
     def __str__(self) -> str:
         worst = max(self.z, key=lambda name: abs(self.z[name]), default=None)
         means = "" if worst is None else f"; of all means that on '{worst}' differs most, by {self.z[worst]:.2f} standard deviations"
-        return f"RMS difference {100 * self.rms:.3g} %, {100 * self.expected_rms:.3g} % is to be expected{means}"
+        expected = "" if math.isnan(self.expected_rms) else f", {100 * self.expected_rms:.3g} % is to be expected"
+        return f"RMS difference {100 * self.rms:.3g} %{expected}{means}"
 
 
 def compare(a: Solution, b: Solution) -> Comparison:

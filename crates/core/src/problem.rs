@@ -3,8 +3,9 @@
 use crate::Error;
 use crate::geometry::{self, Geometry};
 use crate::math::Rgb;
-use crate::mesh::{Cut, ElementMesh, Resolution};
+use crate::mesh::{Cut, ElementMesh, Place, Resolution};
 use crate::scene::{Contacts, Emitter, LightGroup, Scene};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// A scene, cut into elements, ready to be traced. Clones share the geometry.
@@ -57,6 +58,23 @@ impl Problem {
     /// Number of the object of the scene on which element `e` lies.
     pub fn object(&self, e: u32) -> u32 {
         self.scene.triangles[self.mesh.triangle(e) as usize].object
+    }
+
+    /// World position [m] in the middle of element `e`, and the unit normal of its side there; the means over a cluster.
+    pub fn centre(&self, e: u32) -> (Vec3, Vec3) {
+        let middle = |place: Place| {
+            let [a, b, c] = self.mesh.corners_at(place);
+            let (position, normal) = self.geometry.surface(place.triangle, (a + b + c) / 3.0);
+            (position, if place.back { -normal } else { normal })
+        };
+        let first = middle(self.mesh.place(e));
+        let Some(cluster) = self.mesh.cluster(e) else { return first };
+        let shares = cluster.pieces().iter().map(|piece| piece.share());
+        let add = |(position, normal): (Vec3, Vec3), ((p, n), share): ((Vec3, Vec3), f32)| {
+            (position + share * p, normal + share * n)
+        };
+        let means = self.mesh.pieces(e).map(middle).zip(shares).fold((Vec3::ZERO, Vec3::ZERO), add);
+        (means.0, means.1.normalize_or(first.1))
     }
 
     /// Number of the face on which element `e` lies: twice its object's, and one more on the back of two-sided surfaces. What falls on the two sides of

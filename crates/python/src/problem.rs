@@ -34,7 +34,7 @@ struct Known {
 impl Known {
     fn of(problem: &isolux_core::Problem) -> Known {
         let mesh = &problem.mesh;
-        let places = mesh.elements().map(|e| export::centre(problem, e));
+        let places = mesh.elements().map(|e| problem.centre(e));
         let (centres, normals) = places.map(|(centre, normal)| (centre.to_array(), normal.to_array())).unzip();
         Known {
             areas: mesh.elements().map(|e| mesh.area(e)).collect(),

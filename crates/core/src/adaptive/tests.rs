@@ -21,7 +21,7 @@ fn lit(name: &str, elements: u64, light: impl Fn(Vec3) -> f32) -> (Problem, Vec<
 
 fn lit_scene(scene: Scene, elements: u64, light: impl Fn(Vec3) -> f32) -> (Problem, Vec<Rgb>) {
     let problem = Problem::new(scene, Resolution::Elements(elements)).unwrap();
-    let irradiance = problem.mesh.elements().map(|e| Rgb::grey(light(middle(&problem, e)))).collect();
+    let irradiance = problem.mesh.elements().map(|e| Rgb::grey(light(problem.centre(e).0))).collect();
     (problem, irradiance)
 }
 
@@ -29,11 +29,6 @@ fn lit_scene(scene: Scene, elements: u64, light: impl Fn(Vec3) -> f32) -> (Probl
 fn adapted(problem: &Problem, irradiance: &[Rgb], elements: u64) -> Problem {
     let cut = adapt(problem, irradiance, elements, &Contacts::NONE).unwrap();
     Problem::with_cut(problem.scene.clone(), &cut).unwrap()
-}
-
-fn middle(problem: &Problem, e: u32) -> Vec3 {
-    let at = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
-    problem.geometry.surface(problem.mesh.triangle(e), at).0
 }
 
 /// Brighter and brighter towards the middle of the floor.
@@ -185,7 +180,7 @@ fn what_was_put_together_can_be_again() {
     let (problem, irradiance) = lit("office", 1, light);
     let elements = Resolution::least(&problem.scene) / 2;
     let once = adapted(&problem, &irradiance, elements);
-    let irradiance: Vec<Rgb> = once.mesh.elements().map(|e| Rgb::grey(light(middle(&once, e)))).collect();
+    let irradiance: Vec<Rgb> = once.mesh.elements().map(|e| Rgb::grey(light(once.centre(e).0))).collect();
     let twice = adapted(&once, &irradiance, elements);
     assert!(twice.mesh.len() as u64 <= elements, "{} of {elements}, {} before", twice.mesh.len(), once.mesh.len());
 }
@@ -219,7 +214,7 @@ fn direct_light_of_neighbours_has_the_same_noise() {
     let (sampler, sequence) = (LightSampler::new(&problem), SequenceName::default().make(1));
     let mut estimator = DirectEstimator::new(&problem, &sampler, &*sequence);
     let own: Vec<Rgb> = problem.mesh.elements().map(|e| estimator.irradiance(e, rays).0).collect();
-    let is_floor = |e: u32| problem.mesh.normal(e).y > 0.99 && middle(&problem, e).y < 0.01;
+    let is_floor = |e: u32| problem.mesh.normal(e).y > 0.99 && problem.centre(e).0.y < 0.01;
     let step = |light: &[Rgb]| {
         let on_floor = problem.mesh.elements().filter(|&e| is_floor(e));
         let values: Vec<f32> = on_floor.map(|e| light[e as usize].luminance()).collect();
@@ -246,7 +241,7 @@ fn indirect_light_alone_takes_no_direct_light() {
     let scene = builtin("cubes").unwrap();
     let pilot = |problem: &Problem, settings: Settings| {
         assert!(settings.light == LightPart::Indirect);
-        let irradiance = problem.mesh.elements().map(|e| Rgb::grey(pool(middle(problem, e)))).collect();
+        let irradiance = problem.mesh.elements().map(|e| Rgb::grey(pool(problem.centre(e).0))).collect();
         let solution = solution(irradiance);
         let work = Work { rays: 7, replicates: 2 };
         Ok::<_, Error>(Some(Solution { work, ..solution }))
@@ -259,7 +254,7 @@ fn indirect_light_alone_takes_no_direct_light() {
 #[test]
 fn a_triangle_with_one_element_has_the_moments_of_linear_light() {
     let problem = Problem::new(builtin("cubes").unwrap(), Resolution::Elements(1)).unwrap();
-    let irradiance: Vec<Rgb> = problem.mesh.elements().map(|e| Rgb::grey(pool(middle(&problem, e)))).collect();
+    let irradiance: Vec<Rgb> = problem.mesh.elements().map(|e| Rgb::grey(pool(problem.centre(e).0))).collect();
     let light = Light::new(&problem, &irradiance);
     let mut uneven = 0;
     for t in 0..light.triangles() {

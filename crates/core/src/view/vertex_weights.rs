@@ -33,12 +33,11 @@ pub struct VertexWeights {
 impl VertexWeights {
     /// Of elements of whose areas the shares `open` count ([`super::cover`]).
     pub fn new(problem: &Problem, vertices: &Vertices, open: &[f32]) -> VertexWeights {
-        let middles: Vec<Vec3> =
-            problem.mesh.elements().into_par_iter().map(|e| middle(problem, vertices, e)).collect();
+        let centres: Vec<Vec3> = problem.mesh.elements().into_par_iter().map(|e| problem.centre(e).0).collect();
         let at = |v: u32| {
             let around = vertices.touching(v);
             let areas = around.iter().map(|&e| problem.mesh.area(e) * open[e as usize]).collect();
-            let away = around.iter().map(|&e| middles[e as usize] - vertices.position(v)).collect();
+            let away = around.iter().map(|&e| centres[e as usize] - vertices.position(v)).collect();
             tilted(shares(areas), away)
         };
         VertexWeights { weights: (0..vertices.len() as u32).into_par_iter().flat_map_iter(at).collect() }
@@ -56,18 +55,6 @@ impl VertexWeights {
         };
         (0..vertices.len() as u32).into_par_iter().map(mean).collect()
     }
-}
-
-/// Middle [m] of element `e`.
-fn middle(problem: &Problem, vertices: &Vertices, e: u32) -> Vec3 {
-    let (mut sum, mut total) = (Vec3::ZERO, 0.0);
-    for place in problem.mesh.pieces(e) {
-        let [a, b, c] = vertices.at(problem, place).map(|v| vertices.position(v));
-        let area = (b - a).cross(c - a).length().max(f32::MIN_POSITIVE);
-        sum += (a + b + c) / 3.0 * area;
-        total += area;
-    }
-    sum / total
 }
 
 /// Shares of the sum; equal ones if there is none.

@@ -3,7 +3,7 @@
 //! `triangle` is the number of the element's triangle in the scene file. `side` is `front` or `back`; the normal is that
 //! of the side. Luminances are weighted as in Rec. 709. A standard error that is not known is `nan`.
 
-use super::elements::{self, EMISSION, IRRADIANCE, Quantity, RADIOSITY, REFLECTIVITY, STD_ERROR};
+use super::elements::{EMISSION, IRRADIANCE, Quantity, RADIOSITY, REFLECTIVITY, STD_ERROR};
 use super::{ExportOptions, LitScene, cannot_encode};
 use crate::Error;
 use isolux_core::{Problem, Solution};
@@ -41,7 +41,7 @@ fn row(problem: &Problem, solution: &Solution, e: u32) -> Vec<String> {
     let scene = &problem.scene;
     let place = problem.mesh.place(e);
     let triangle = &scene.triangles[place.triangle as usize];
-    let (position, normal) = elements::centre(problem, e);
+    let (position, normal) = problem.centre(e);
     let mut fields = vec![
         e.to_string(),
         scene.objects[triangle.object as usize].name.clone(),

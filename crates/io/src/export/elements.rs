@@ -62,27 +62,6 @@ pub fn corners(problem: &Problem, place: Place) -> [Vec3; 3] {
     if place.back { [a, c, b] } else { [a, b, c] }
 }
 
-/// World position [m] in the middle of element `e`, and the unit normal of its side there; the means over a cluster.
-pub fn centre(problem: &Problem, e: u32) -> (Vec3, Vec3) {
-    let middle = |place: Place| {
-        let [a, b, c] = problem.mesh.corners_at(place);
-        let (position, normal) = problem.geometry.surface(place.triangle, (a + b + c) / 3.0);
-        (position, if place.back { -normal } else { normal })
-    };
-    let first = middle(problem.mesh.place(e));
-    let Some(cluster) = problem.mesh.cluster(e) else { return first };
-    let shares = cluster.pieces().iter().map(|piece| piece.share());
-    let (position, normal) = problem
-        .mesh
-        .pieces(e)
-        .map(middle)
-        .zip(shares)
-        .fold((Vec3::ZERO, Vec3::ZERO), |(position, normal), ((p, n), share)| {
-            (position + share * p, normal + share * n)
-        });
-    (position, normal.normalize_or(first.1))
-}
-
 /// For comments: `, smoothed within the error bars`, if the noise was taken out of the numbers.
 pub fn smoothed_in_words(solution: &Solution) -> String {
     let how = solution.provenance.parameter(SMOOTHED);
@@ -118,7 +97,7 @@ mod tests {
         for e in problem.mesh.elements() {
             let [a, b, c] = corners(&problem, problem.mesh.place(e));
             let cross = (b - a).cross(c - a);
-            let (position, normal) = centre(&problem, e);
+            let (position, normal) = problem.centre(e);
             assert!(cross.normalize().distance(normal) < 1e-5, "element {e}");
             assert!((0.5 * cross.length() - problem.mesh.area(e)).abs() < 1e-5, "element {e}");
             assert!(((a + b + c) / 3.0).distance(position) < 1e-5, "element {e}");
@@ -132,7 +111,7 @@ mod tests {
             let square = |k: u32| Vec2::new((k % 50) as f32 + 0.5, (k / 50) as f32 + 0.5) / 50.0;
             let points = (0..2500).map(|k| problem.mesh.point(e, square(k)));
             let mean = points.map(|(t, uv)| problem.geometry.surface(t, uv).0).sum::<Vec3>() / 2500.0;
-            let (position, normal) = centre(&problem, e);
+            let (position, normal) = problem.centre(e);
             let side = if problem.mesh.place(e).back { -1.0 } else { 1.0 };
             assert!(mean.distance(position) < 0.01, "{mean} {position}");
             assert!(normal.distance(side * (position - Vec3::ONE).normalize()) < 0.05, "{normal}");

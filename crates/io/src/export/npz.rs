@@ -33,7 +33,7 @@ pub fn write(lit: &LitScene, options: &ExportOptions) -> Result<Vec<u8>, Error> 
     archive.floats("vertices", &[p, 3, 3], corners.flat_map(|p| p.to_array()))?;
     archive.integers("element", p, pieces.map(|(e, _)| e))?;
     archive.floats("area", &[n], mesh.elements().map(|e| mesh.area(e)))?;
-    let normals = mesh.elements().flat_map(|e| elements::centre(problem, e).1.to_array());
+    let normals = mesh.elements().flat_map(|e| problem.centre(e).1.to_array());
     archive.floats("normal", &[n, 3], normals)?;
     for quantity in [REFLECTIVITY, EMISSION, IRRADIANCE, STD_ERROR, RADIOSITY] {
         let values = quantity.values(problem, solution).flat_map(|color| color.to_array());

@@ -24,11 +24,6 @@ fn square(m: u16, objects: u32) -> Problem {
     Problem::with_cut(scene(&[([a, b, c], 0), ([a, c, d], objects - 1)]), &Cut::regular(&[m, m])).unwrap()
 }
 
-fn centre(problem: &Problem, e: u32) -> Vec3 {
-    let at = problem.mesh.corners(e).iter().sum::<Vec2>() / 3.0;
-    problem.geometry.surface(problem.mesh.triangle(e), at).0
-}
-
 /// Noise of variance 1, uniform in `±√3`.
 fn noise(e: u32) -> f32 {
     (hash::unit_f64(hash::mix(u64::from(e) + 1)) - 0.5) as f32 * 12f32.sqrt()
@@ -48,7 +43,7 @@ fn mean_square(values: &[Rgb], of: impl Fn(usize) -> f32) -> f32 {
 #[test]
 fn the_flux_on_every_object_is_kept_to_rounding() {
     let problem = square(20, 2);
-    let before = light(&problem, |e| 10.0 + centre(&problem, e).x + noise(e), |e| 1.0 + 0.5 * noise(e + 7));
+    let before = light(&problem, |e| 10.0 + problem.centre(e).0.x + noise(e), |e| 1.0 + 0.5 * noise(e + 7));
     let after = smooth(&problem, &before);
     let flux = |solution: &Solution, object: u32| {
         let on = problem.mesh.elements().filter(|&e| problem.mesh.triangle(e) == object);
@@ -98,7 +93,7 @@ fn noise_in_even_light_falls_as_many_neighbours_let_expect() {
 #[test]
 fn a_rare_large_error_is_evened_out() {
     let problem = square(16, 1);
-    let inner = |e: &u32| centre(&problem, *e).truncate().distance(Vec2::splat(0.5)) < 0.1;
+    let inner = |e: &u32| problem.centre(*e).0.truncate().distance(Vec2::splat(0.5)) < 0.1;
     let off = problem.mesh.elements().find(inner).unwrap();
     let before = light(&problem, |e| if e == off { 14.9 } else { 10.0 }, |_| 1.0);
     let after = smooth(&problem, &before).irradiance[off as usize].g;
@@ -112,7 +107,7 @@ fn a_rare_large_error_is_evened_out() {
 #[test]
 fn a_step_beyond_the_error_bars_does_not_leak() {
     let problem = square(16, 1);
-    let step = |e: u32| if centre(&problem, e).x < 0.5 { 10.0 } else { 20.0 };
+    let step = |e: u32| if problem.centre(e).0.x < 0.5 { 10.0 } else { 20.0 };
     let after = smooth(&problem, &light(&problem, step, |_| 1.0));
     assert!(problem.mesh.elements().all(|e| after.irradiance[e as usize].g == step(e)));
 }
@@ -136,12 +131,12 @@ fn light_stays_on_its_side_of_a_crease_and_within_its_object() {
 #[test]
 fn a_gradient_is_not_flattened_inside_a_surface() {
     let problem = square(32, 1);
-    let slope = |e: u32| 10.0 + 3.0 * centre(&problem, e).x - centre(&problem, e).y;
+    let slope = |e: u32| 10.0 + 3.0 * problem.centre(e).0.x - problem.centre(e).0.y;
     let after = smooth(&problem, &light(&problem, slope, |_| 2.0));
     for e in problem.mesh.elements() {
-        let inside = centre(&problem, e).truncate().to_array().into_iter().all(|x| (0.1..0.9).contains(&x));
+        let inside = problem.centre(e).0.truncate().to_array().into_iter().all(|x| (0.1..0.9).contains(&x));
         let error = (after.irradiance[e as usize].g - slope(e)).abs();
-        assert!(!inside || error < 2e-3, "{error} at {}", centre(&problem, e));
+        assert!(!inside || error < 2e-3, "{error} at {}", problem.centre(e).0);
     }
 }
 
