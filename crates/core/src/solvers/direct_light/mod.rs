@@ -102,12 +102,17 @@ impl DirectLight {
     /// Begins a round of about `rays` rays in all, to be merged with light that was shot with so much flux [lm] a ray (infinite if there
     /// is none).
     pub fn begin_round(&mut self, problem: &Problem, rays: f64, ray_flux: f64) {
+        self.end_round();
         self.rounds += 1;
-        self.neighbours.end_round();
         (self.rays, self.ray_flux) = (rays / self.elements as f64, ray_flux);
         let every = self.elements.div_ceil(SAMPLE);
         let sample = problem.mesh.elements().step_by(every);
         self.rays_for_need = self.neighbours.rays_for_need(&problem.mesh, sample, rays / every as f64, ray_flux);
+    }
+
+    /// What the running round or trial has taught holds from now on.
+    pub fn end_round(&mut self) {
+        self.neighbours.end_round();
     }
 
     /// Pieces of a round: ranges of neighbouring elements.

@@ -3,12 +3,14 @@
 //! For an element of area A, as variances of its irradiance in one complete solution:
 //!
 //! - shooting: `E Φ / A`, with Φ [lm] the flux of each ray;
-//! - D bundles that cross it N times, and the surplus that bright elements shoot: `(V + n) / N + V_s / A + 2 V / D + l n`, with V, its
-//!   noise n and V_s those of [`Split`]. The element has seen N points, but from D / 2 directions only; over a direction noise averages
-//!   out, but for that of its [`surroundings`](super::surroundings), l. An element that is hardly ever crossed is told by
-//!   the sum of what it sees, not by the mean: it has the mean square instead of the variance;
+//! - D bundles that cross it N times, and the surplus that bright elements shoot: `(V + n) / N + V_s / A + 2 V / D`, with V, its noise n
+//!   and V_s those of [`Split`]. The element has seen N points, but from D / 2 directions only. An element that is hardly ever crossed
+//!   is told by the sum of what it sees, not by the mean: it has the mean square instead of the variance;
 //! - m local lines: `V' / m`, where V' is the variance of all radiosity. It has more noise, for these lines see light only where it has
 //!   landed.
+//!
+//! Over many lines noise averages out, but for that of its [`surroundings`](super::surroundings), `l n`. All that gathers sees the same
+//! surroundings, so this is left however much gathers: it decides how much shall shoot, not what shall gather.
 //!
 //! Scene-wide means stand for E and V: weights that depended on an element's own noise would pull it towards low values.
 
@@ -91,7 +93,7 @@ impl Indirect {
             variance_of_spots: all.variance + self.spots * all.noise,
             shooting: self.irradiance * ray_flux[1],
             surplus: split.variance_of_surplus * received,
-            lasting: self.lasting * split.noise,
+            lasting: self.lasting * all.noise,
             bundles,
             crossings,
         }
@@ -115,7 +117,7 @@ impl Precision {
             Some(_) => (variance + noise + mean * mean) / crossings,
             None => (variance + noise) / crossings * (1.0 + 1.0 / crossings),
         };
-        self.variance_of_spots / (of_crossings + self.surplus / area + 2.0 * variance / self.bundles + self.lasting)
+        self.variance_of_spots / (of_crossings + self.surplus / area + 2.0 * variance / self.bundles)
     }
 
     /// Crossings that are expected of an element of `area` [m²], if they are so few that what they see had better be divided by that
@@ -150,6 +152,7 @@ impl Precision {
     /// What the sum of `A^(3/4) V` over elements of these `areas` [m²] would be if `rays` local lines gathered for them.
     pub fn expected_variance(&self, areas: impl Iterator<Item = f64> + Clone, rays: f64) -> f64 {
         let limit = self.limit(areas.clone(), rays);
-        areas.map(|area| importance(area) * self.variance_of_spots / self.lines(area).max(limit)).sum()
+        let variance = |area| self.variance_of_spots / self.lines(area).max(limit) + self.lasting;
+        areas.map(|area| importance(area) * variance(area)).sum()
     }
 }

@@ -9,12 +9,15 @@
 //!
 //! Each estimate of direct and of indirect light is unbiased, and they are merged with weights that depend on what is expected, or on
 //! earlier complete solutions, never on their own noise. What is gathered is noisy, but averages over many elements, and the noise is
-//! another in each complete solution. How the rays are shared is decided in [`plan`]. With few rays for each element all shoot.
+//! another in each complete solution. How the rays are shared is decided in [`plan`], by what a *pilot* of few rays has told, which only
+//! shoots and looks for the lights and is then forgotten. With few rays for each element all shoot.
 //!
 //! Unbiased but for the quotient of counted crossings of elements that have enough of them, of order 1 / N_i (see
 //! [`crate::transport::bundle_gather`]). Bundles see elements of one radiosity, wherever light has landed on them. Cost: one ray a
 //! sample; a crossing costs as much as an eighth of a ray.
-//! Memory: beside that of a [`Relaxation`] 8 bytes an element for rays of the surplus, 48 bytes an element while bundles gather, and 32 more for each of at most four pieces in flight.
+//!
+//! Memory: beside that of a [`Relaxation`] 8 bytes an element for rays of the surplus, 48 bytes an element while bundles gather, and 32
+//! more for each of at most four pieces in flight.
 
 mod bundles;
 mod direct;
@@ -47,6 +50,8 @@ use std::ops::Range;
 
 /// With fewer rays an element than this there is no time to look around.
 const FEWEST_RAYS: u64 = 4;
+/// The pilot shoots this share of the rays of the first complete solution.
+const PILOT: u64 = 8;
 
 /// What is being done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -74,8 +79,11 @@ pub struct Auto {
     ray_flux: RayFlux,
     /// What surroundings leave of noise.
     lasting_noise: f64,
-    /// Rays, or what costs as much, of the phases after shooting.
+    /// Rays, or what costs as much: of the pilot, and of the phases after shooting.
+    rays_of_pilot: u64,
     rays_after: u64,
+    /// Seed and rays of the complete solution that follows the running pilot.
+    after_pilot: Option<(u64, u64)>,
     shooting: Relaxation,
     direct: Direct,
     bundles: Bundles,
@@ -99,7 +107,9 @@ impl Auto {
             planned_for: 0,
             ray_flux: RayFlux::default(),
             lasting_noise: surroundings::lasting_noise(problem),
+            rays_of_pilot: 0,
             rays_after: 0,
+            after_pilot: None,
             shooting: Relaxation::new(problem, settings, Course::new(&stages)),
             direct: Direct::new(problem, settings),
             bundles: Bundles::default(),
@@ -114,7 +124,10 @@ impl Auto {
         self.phase = match self.phase {
             Phase::Shooting => {
                 self.ray_flux = self.plan.ray_flux(self.power(self.shooting.experience()));
-                self.direct.begin(problem, self.plan.direct, self.ray_flux[0]);
+                match self.after_pilot {
+                    Some(_) if self.wanted == LightPart::All => self.direct.begin_trial(),
+                    _ => self.direct.begin(problem, self.plan.direct, self.ray_flux[0]),
+                }
                 Phase::Direct
             }
             Phase::Direct => {
@@ -138,8 +151,20 @@ impl Auto {
             }
             Phase::Local | Phase::Done => Phase::Done,
         };
-        if self.phase != Phase::Done && self.pieces_of_phase().is_empty() {
-            self.next_phase(problem);
+        self.skip_idle_phases(problem);
+    }
+
+    /// Begins the next phase if the running one has nothing to do, and after the pilot what it was for.
+    fn skip_idle_phases(&mut self, problem: &Problem) {
+        if self.phase != Phase::Done {
+            if self.pieces_of_phase().is_empty() {
+                self.next_phase(problem);
+            }
+        } else if let Some((seed, rays)) = self.after_pilot.take() {
+            let experience = self.shooting.experience();
+            self.rays_of_pilot = self.shooting.rays() + self.rays_after;
+            self.plan_for(problem, rays, &experience);
+            self.begin(problem, seed, &experience);
         }
     }
 
@@ -159,20 +184,23 @@ impl Auto {
         [self.emitted, self.emitted * experience.reflected_share]
     }
 
-    /// Makes the best plan by what is known, or a careful one. It stays for all complete solutions of as many rays.
+    /// Makes the best plan for complete solutions of so many `rays`, by what the last one or the pilot has told.
     fn plan_for(&mut self, problem: &Problem, rays: u64, experience: &Experience) {
-        match self.direct.learned() {
-            _ if rays == self.planned_for => {}
-            _ if rays < FEWEST_RAYS * problem.mesh.len() as u64 => {
-                self.plan = Plan::only_shooting(rays, experience.reflected_share);
-            }
-            None => self.plan = Plan::careful(rays),
-            Some(direct) => {
-                let direct = (self.wanted == LightPart::All).then_some(direct);
-                self.plan = Plan::best(problem, rays, self.power(*experience), direct, &self.indirect);
-                self.planned_for = rays;
-            }
-        }
+        let direct = (self.wanted == LightPart::All).then(|| self.direct.learned());
+        self.plan = Plan::best(problem, rays, self.power(*experience), direct, &self.indirect);
+        self.planned_for = rays;
+    }
+
+    /// Begins to shoot by the running plan.
+    fn begin(&mut self, problem: &Problem, seed: u64, experience: &Experience) {
+        (self.seed, self.rays_after, self.phase) = (seed, 0, Phase::Shooting);
+        // Incremental shooting takes as many rays as are planned, whatever share of them the power deserves: as if surfaces reflected as
+        // much. Where they reflect next to nothing it may take more of them than it needs, but a thousand times at most.
+        let planned = self.plan.experience();
+        let share = planned.reflected_share / experience.reflected_share.max(planned.reflected_share * 1e-3);
+        self.shooting.set_share_of_incremental(share, self.plan.ray_flux(self.power(*experience)));
+        self.shooting.restart(problem, seed, self.plan.emission + self.plan.reflection, &planned);
+        self.skip_idle_phases(problem);
     }
 
     /// The numbers of the running phase, independent of those of the others.
@@ -184,19 +212,19 @@ impl Auto {
 #[typetag::serde]
 impl CompleteSolution for Auto {
     fn restart(&mut self, problem: &Problem, seed: u64, rays: u64, experience: &Experience) {
-        self.seed = seed;
-        self.rays_after = 0;
-        self.plan_for(problem, rays, experience);
-        self.phase = Phase::Shooting;
-        // Incremental shooting takes as many rays as are planned, whatever share of them the power deserves: as if surfaces reflected as
-        // much. Where they reflect next to nothing it may take more of them than it needs, but a thousand times at most.
-        let planned = self.plan.experience();
-        let share = planned.reflected_share / experience.reflected_share.max(planned.reflected_share * 1e-3);
-        self.shooting.set_share_of_incremental(share, self.plan.ray_flux(self.power(*experience)));
-        self.shooting.restart(problem, seed, self.plan.emission + self.plan.reflection, &planned);
-        if self.pieces_of_phase().is_empty() {
-            self.next_phase(problem);
+        (self.rays_of_pilot, self.after_pilot) = (0, None);
+        let mut first_seed = seed;
+        if rays == self.planned_for {
+            // The plan stays for all complete solutions of as many rays.
+        } else if rays < FEWEST_RAYS * problem.mesh.len() as u64 {
+            (self.plan, self.planned_for) = (Plan::only_shooting(rays, experience.reflected_share), 0);
+        } else if self.planned_for == 0 {
+            self.plan = Plan::only_shooting(rays / PILOT, experience.reflected_share);
+            (first_seed, self.after_pilot) = (derive(seed, PILOT), Some((seed, rays)));
+        } else {
+            self.plan_for(problem, rays, experience);
         }
+        self.begin(problem, first_seed, experience);
     }
 
     fn pieces(&self) -> Option<Range<u64>> {
@@ -243,7 +271,7 @@ impl CompleteSolution for Auto {
     }
 
     fn rays(&self) -> u64 {
-        self.shooting.rays() + self.rays_after
+        self.rays_of_pilot + self.shooting.rays() + self.rays_after
     }
 
     fn balance(&self) -> Balance {
@@ -261,6 +289,7 @@ impl CompleteSolution for Auto {
 
     fn stage(&self) -> &'static str {
         match self.phase {
+            _ if self.after_pilot.is_some() => "looking where rays pay",
             Phase::Shooting => self.shooting.stage(),
             Phase::Direct => "looking for the lights",
             Phase::Bundles => "gathering along bundles",
