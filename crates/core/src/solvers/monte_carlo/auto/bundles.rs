@@ -1,5 +1,9 @@
 //! What elements gather along bundles of global lines ([`bundle_gather`](crate::transport::bundle_gather)), merged with what was shot.
 //!
+//! With n crossings of an element by each of D bundles the variance is `V (1 / (D n) + 2 / D)`, for an element that sees one place along
+//! a direction sees the same from everywhere on it, mostly. So grids are as coarse as n = 1/3 allows: measured in four scenes of 40
+//! to 140,000 triangles, the time of a bundle times `1 / n + 2` is least between n = 0.2 and 0.7, and n = 3 takes twice as long.
+//!
 //! Memory while bundles gather: 48 bytes an element, and 32 more for each piece in flight, of which there are four at most.
 
 use super::indirect::Precision;
@@ -15,6 +19,11 @@ use std::ops::Range;
 
 /// A crossing costs as much as this share of a ray, and counts as that.
 pub const COST: f64 = 1.0 / 8.0;
+/// Crossings of an element by a bundle, in the mean. A triangle has one at least, or most of the time would go into those that are not
+/// crossed.
+const CROSSINGS_OF_ELEMENT: f64 = 1.0 / 3.0;
+/// Least cells along the edge of a grid, if there are enough directions.
+const LEAST_CELLS: f64 = 128.0;
 /// Complete solutions that have enough directions together.
 const COMPLETE_SOLUTIONS: f64 = 8.0;
 /// Most pieces of all bundles, and pieces in flight: every piece has sums of its own.
@@ -35,8 +44,11 @@ pub struct Bundles {
 /// Bundles that cost as much as `rays` rays, and cells along the edges of their grids.
 pub fn bundles_of(problem: &Problem, rays: f64) -> (u64, u32) {
     let samples = rays / COST;
+    let (elements, triangles) = (problem.mesh.len() as f64, problem.scene.triangles.len() as f64);
+    let of_bundle = triangles.max(CROSSINGS_OF_ELEMENT * elements);
+    let enough = (of_bundle / samples_of_bundle(problem, 1)).sqrt().max(LEAST_CELLS) as u32;
     // Others follow, with other directions.
-    let cells = grid_cells(problem, (COMPLETE_SOLUTIONS * samples) as u64);
+    let cells = grid_cells(problem, (COMPLETE_SOLUTIONS * samples) as u64).min(enough);
     ((samples / samples_of_bundle(problem, cells)).ceil() as u64, cells)
 }
 
