@@ -133,3 +133,37 @@ impl Bundles {
         self.precision
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Resolution;
+    use crate::scene::builtin::builtin;
+
+    /// Rays enough for thousands of directions.
+    const MANY: f64 = 1e9;
+
+    fn crossings_of_bundle(name: &str, elements: u64) -> [f64; 2] {
+        let problem = Problem::new(builtin(name).unwrap(), Resolution::Elements(elements)).unwrap();
+        let samples = samples_of_bundle(&problem, bundles_of(&problem, MANY).1);
+        [samples / problem.mesh.len() as f64, samples / problem.scene.triangles.len() as f64]
+    }
+
+    #[test]
+    fn a_bundle_crosses_an_element_a_third_of_a_time_and_a_triangle_once() {
+        for (name, elements) in [("cornell-box", 200_000), ("office", 200_000)] {
+            let [of_element, _] = crossings_of_bundle(name, elements);
+            assert!((of_element - 1.0 / 3.0).abs() < 0.01, "{name}: {of_element}");
+        }
+        let [_, of_triangle] = crossings_of_bundle("office", 60_000);
+        assert!((of_triangle - 1.0).abs() < 0.02, "{of_triangle}");
+    }
+
+    #[test]
+    fn few_crossings_are_shared_out_to_enough_directions() {
+        let problem = Problem::new(builtin("office").unwrap(), Resolution::Elements(60_000)).unwrap();
+        let directions = |rays| bundles_of(&problem, rays).0 as f64 * COMPLETE_SOLUTIONS;
+        assert!((290.0..330.0).contains(&directions(1e4)), "{}", directions(1e4));
+        assert!(directions(1e6) > 1000.0);
+    }
+}
