@@ -66,6 +66,8 @@ pub struct Reference {
     /// Irradiance [lux], luminance, of every element, and its standard error.
     irradiance: Vec<f64>,
     std_error: Vec<f64>,
+    /// Whether an irradiance without any error is an exact one. In a Monte Carlo solution it says that no light was found.
+    exact: bool,
 }
 
 /// Relative errors of luminance irradiance.
@@ -84,12 +86,13 @@ impl Reference {
         Reference {
             irradiance: solution.irradiance.iter().map(|lux| lux.luminance_f64()).collect(),
             std_error: solution.std_error.iter().map(|&lux| f64::from(luminance_error(lux))).collect(),
+            exact: false,
         }
     }
 
     /// The same irradiance [lux] on all of so many elements, known without error.
     pub fn exact(irradiance: f64, elements: usize) -> Reference {
-        Reference { irradiance: vec![irradiance; elements], std_error: vec![0.0; elements] }
+        Reference { irradiance: vec![irradiance; elements], std_error: vec![0.0; elements], exact: true }
     }
 
     /// Irradiance [lux] of element `e`.
@@ -106,7 +109,7 @@ impl Reference {
     /// square of the median as if errors were normal.
     ///
     /// Where elements count alike, dark ones count as if they had a hundredth of the mean irradiance, and those that the reference
-    /// itself does not know to a fifth are left out.
+    /// itself does not know to a fifth are left out. So are those where it found no light at all, 0 ± 0.
     pub fn errors(&self, mesh: &ElementMesh, irradiance: impl Fn(u32) -> f64) -> Errors {
         let difference = |e: u32| irradiance(e) - self.on(e);
         let least = self.least(mesh);
@@ -156,7 +159,7 @@ impl Reference {
     }
 
     fn is_known(&self, e: u32, least: f64) -> bool {
-        self.std_error(e) <= UNKNOWN * self.on(e).max(least)
+        (self.exact || self.std_error(e) > 0.0) && self.std_error(e) <= UNKNOWN * self.on(e).max(least)
     }
 }
 
@@ -231,5 +234,15 @@ mod tests {
         let errors = reference.errors(&mesh, |e| if e == 0 { 50.0 } else { 5.0 });
         assert_eq!((errors.unweighted, errors.median), (0.0, 0.0));
         assert!(errors.weighted > 1.0, "by area it counts: {errors:?}");
+    }
+
+    #[test]
+    fn so_is_one_where_it_found_no_light() {
+        let (mesh, mut reference) = (mesh(), Reference { exact: false, ..Reference::exact(5.0, 12) });
+        (reference.irradiance[0], reference.std_error) = (0.0, vec![0.1; 12]);
+        reference.std_error[0] = 0.0;
+        assert_near(reference.unknown(&mesh), 1.0 / 12.0);
+        let dark = |e| if e == 0 { 5.0 } else { reference.on(e) };
+        assert_eq!(reference.errors(&mesh, dark).unweighted, 0.0);
     }
 }

@@ -95,9 +95,10 @@ impl Allocation {
 pub const SAMPLE: usize = 4096;
 
 /// How much the variance of an element of `area` [m²] matters: less than it does over the area, so that small elements are not
-/// given up, and more than it does for elements one by one, of which most are often on a hundredth of all surfaces.
+/// given up, and more than it does for elements one by one, of which most are often on a hundredth of all surfaces. In three
+/// furnished rooms the root serves both better than `A^(3/4)`, and in the one where it was tried better over the area than `A^(1/4)`.
 pub fn importance(area: f64) -> f64 {
-    area.powf(0.75)
+    area.sqrt()
 }
 
 /// The level from which `wanted(level)`, which grows from 0, is `target`, to a millionth; 0 for no target, and a very large

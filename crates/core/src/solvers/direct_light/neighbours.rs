@@ -7,7 +7,7 @@
 //! ```
 //!
 //! rays for each element the sum of `a V` over all elements is least (Neyman 1934), where V is the merged variance. With a = A that
-//! would be the area-weighted mean square error, with a = 1 the plain one; `a = A^(3/4)` serves both.
+//! would be the area-weighted mean square error, with a = 1 the plain one; `a = A^(1/2)` serves both.
 
 use super::{COSINE_SHARES, LEAST_WANTED};
 use crate::mesh::ElementMesh;
@@ -86,7 +86,7 @@ impl Neighbours {
         }
     }
 
-    /// What the sum of `A^(3/4) V` over `elements` would be if they had `rays` rays together, merged with rays of so much flux [lm].
+    /// What the sum of `A^(1/2) V` over `elements` would be if they had `rays` rays together, merged with rays of so much flux [lm].
     pub fn expected_variance(
         &self,
         mesh: &ElementMesh,

@@ -149,7 +149,7 @@ impl Precision {
         level(|limit| areas.clone().map(|area| (limit - self.lines(area)).max(0.0)).sum(), rays)
     }
 
-    /// What the sum of `A^(3/4) V` over elements of these `areas` [m²] would be if `rays` local lines gathered for them.
+    /// What the sum of `A^(1/2) V` over elements of these `areas` [m²] would be if `rays` local lines gathered for them.
     pub fn expected_variance(&self, areas: impl Iterator<Item = f64> + Clone, rays: f64) -> f64 {
         let limit = self.limit(areas.clone(), rays);
         let variance = |area| self.variance_of_spots / self.lines(area).max(limit) + self.lasting;

@@ -1,4 +1,4 @@
-//! How the rays of a complete solution are shared: so that the sum of `A^(3/4) V` over the elements is expected to be least.
+//! How the rays of a complete solution are shared: so that the sum of `A^(1/2) V` over the elements is expected to be least.
 //!
 //! V is the variance of an element's irradiance, by the models of [`indirect`](super::indirect) and of
 //! [`direct light`](crate::solvers::direct_light), whose parameters earlier complete solutions have measured. All shares that
