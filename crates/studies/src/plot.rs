@@ -29,6 +29,8 @@ const PNG_SCALE: f32 = 1.5;
 
 /// Least quotient of the ends of an axis.
 const LEAST_RANGE: f64 = 12.0;
+/// Guides that end left of this share of the horizontal axis have room for their name beside them.
+const ROOM: f64 = 0.85;
 
 const INK: RGBColor = RGBColor(45, 45, 48);
 const GRID: RGBColor = RGBColor(226, 226, 230);
@@ -156,13 +158,12 @@ fn panel(area: &Area, plot: &PlotSpec, name: &str, curves: &[Curve]) -> Result<(
         let end = x.start * (edge / on(x.start).1).powf(1.0 / slope);
         let line = [on(x.start), on(end.min(x.end))];
         chart.draw_series(DashedLineSeries::new(line, 2, 4, GUIDE.stroke_width(1))).map_err(text)?;
-        // Beside the end of a line that leaves at the bottom or top; else under, or over, the end at the right.
-        let place = match (line[1].0 < x.end, slope < 0.0) {
-            (true, true) => Pos::new(HPos::Left, VPos::Bottom),
-            (true, false) => Pos::new(HPos::Left, VPos::Top),
-            (false, true) => Pos::new(HPos::Right, VPos::Top),
-            (false, false) => Pos::new(HPos::Right, VPos::Bottom),
-        };
+        // Beside the end of a line that leaves at the bottom or top, before it where there is no room; else under, or over, the end.
+        let leaves = line[1].0 < x.end;
+        let room = (line[1].0 / x.start).ln() < ROOM * (x.end / x.start).ln();
+        let over = leaves == (slope < 0.0);
+        let beside = if leaves && room { HPos::Left } else { HPos::Right };
+        let place = Pos::new(beside, if over { VPos::Bottom } else { VPos::Top });
         let style = (FONT, 12).into_font().color(&GUIDE).pos(place);
         let name = format!(" slope {} ", short(slope).replace('-', "−"));
         chart.draw_series([Text::new(name, line[1], style)]).map_err(text)?;
